@@ -58,12 +58,12 @@ class BumpFloorTest : public RenderTest {
   static scene::CameraPose camera() { return scene::lookAt({0, 2, 0.7f}, {0, 0, 0}, 0.7f); }
 
   Image drawn(const scene::Scene& scene, Term term, const std::vector<render::TechniqueUse>& techniques,
-              std::vector<frame::PassReport>* passes = nullptr) {
+              std::vector<frame::PassReport>* passes = nullptr, const scene::CameraPose& from = camera()) {
     render::Renderer renderer(device(), scene);
     render::Settings asked = settings(kSide, kSide, term, techniques, term == Term::relief ? 0 : -1);
     asked.channels = true;
     renderer.configure(std::move(asked));
-    renderer.setCamera(camera());
+    renderer.setCamera(from);
     renderer.render();
     if (passes) *passes = renderer.explain();
     return renderer.read();

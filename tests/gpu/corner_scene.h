@@ -52,10 +52,12 @@ struct Corner {
     scene.meshes[1].primitives[0].material = own;
     pose.instances[1].mesh = 1;
   }
-  /// Parallel to the wall, 0.3 m wide, at `x` m: by default halfway between the origin and the wall.
-  void addPlate(float x = 0.5f) {
+  /// Parallel to the wall, 0.3 m high and 2 `halfWidth` wide, at `x` m: by default a square halfway between
+  /// the origin and the wall.
+  void addPlate(float x = 0.5f, float halfWidth = 0.15f) {
     addInstance(scene, pose, addMesh(scene, floorPrimitive(0.15f, 0)),
-                glm::translate(glm::mat4(1), {x, 0.4f, 0}) * upright());
+                glm::translate(glm::mat4(1), {x, 0.4f, 0}) * upright() *
+                    glm::scale(glm::mat4(1), {1, 1, halfWidth / 0.15f}));
   }
   glm::vec3 position(const Answer& v, int x, int y) const { return positionOf(v, camera, pose.bounds, x, y); }
 

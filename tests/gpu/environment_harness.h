@@ -102,6 +102,10 @@ class EnvironmentTest : public RenderTest {
   }
 
   static Image reference(const scene::Scene& scene, const render::Settings& s, int spp) {
+    return referenceWithNoise(scene, s, spp).select({"R", "G", "B"});
+  }
+  /// With all of its channels, the variance of each pixel among them.
+  static Image referenceWithNoise(const scene::Scene& scene, const render::Settings& s, int spp) {
     const scene::Pose pose = scene::evaluate(scene, 0);
     reference::Request request{
         .scene = scene, .pose = pose, .camera = pose.cameras.at(0), .progress = {}, .checkpoint = {}};
@@ -110,7 +114,7 @@ class EnvironmentTest : public RenderTest {
     request.term = s.term;
     request.light = s.light < 0 ? reference::kAllLights : s.light;
     request.spp = spp;
-    return reference::render(request).image.select({"R", "G", "B"});
+    return reference::render(request).image;
   }
 };
 

@@ -182,6 +182,22 @@ TEST_F(FactoredBrdfTest, ExtremesAreFinite) {
     error(ball(1e-3f), {{"fit", fit}, {"fit_texels", "2"}, {"format", "byte"}});
 }
 
+/// Roughness 0 is the narrowest lobe that there is; tables of 2 texels spread its peak over the ball.
+TEST_F(FactoredBrdfTest, LightsAsBrightAsTheSunGiveTheSamePictureAsDimOnes) {
+  for (const char* texels : {"2", "16"}) {
+    const auto under = [&](float intensity) {
+      scene::Scene scene = ball(0);
+      for (scene::LightSource& light : scene.lights) light.intensity = intensity;
+      return drawn(scene, {technique("factored_brdf", {{"texels", texels}, {"format", "half"}})});
+    };
+    const Image bright = under(1e5f);
+    Image expected = under(2);
+    for (float& value : expected.data()) value *= 5e4f;
+    EXPECT_LE(errorOf(bright, expected), 1e-3)
+        << texels << " texels, in the mean " << mean(bright) << " for " << mean(expected);
+  }
+}
+
 /// Each fit against the exact model, by the error that it has in a picture on the CPU. That one has grazing
 /// lights, and this one few.
 TEST_F(FactoredBrdfTest, FitsAreAsExactAsTheySay) {

@@ -54,6 +54,25 @@ class IlluminationSamplesTest : public RenderTest {
       }
     return {std::sqrt(sum / count), light / count};
   }
+
+  /// The mean over pixels and colours, whatever else the picture holds.
+  static double meanLight(const Image& image) {
+    double sum = 0;
+    for (int y = 0; y < image.height(); ++y)
+      for (int x = 0; x < image.width(); ++x)
+        for (int c = 0; c < 3; ++c) sum += image.at(x, y, c);
+    return sum / (3.0 * image.width() * image.height());
+  }
+
+  /// The Cornell box with walls, and blocks if it has them, that reflect 0.99.
+  static scene::Scene whiteBox(bool blocks) {
+    scene::Scene scene = asset("cornell_box");
+    for (scene::Material& material : scene.materials)
+      if (material.emission == glm::vec3(0)) material.baseColour = glm::vec4(0.99f, 0.99f, 0.99f, 1);
+    for (scene::Node& node : scene.nodes)
+      if (!blocks && node.name.find("block") != std::string::npos) node.mesh = scene::kNone;
+    return scene;
+  }
 };
 
 /// The plate sends three spots of light to the wall: its own light by directions is what they need. Paths
@@ -166,26 +185,24 @@ TEST_F(IlluminationSamplesTest, SamplesReflectedAtPixelsAreWhatTreesShow) {
 /// White walls lose light through the open side of their box alone. (Coarse elements lose some along the
 /// blocks, too, which are left out.)
 TEST_F(IlluminationSamplesTest, ManyBouncesBetweenWhiteWallsGainNoLight) {
-  scene::Scene scene = asset("cornell_box");
-  for (scene::Material& material : scene.materials)
-    if (material.emission == glm::vec3(0)) material.baseColour = glm::vec4(0.99f, 0.99f, 0.99f, 1);
-  for (scene::Node& node : scene.nodes)
-    if (node.name.find("block") != std::string::npos) node.mesh = scene::kNone;
+  const scene::Scene scene = whiteBox(false);
   render::Renderer renderer(device(), scene);
-  const Image exact = truth(renderer, scene, 8);
-  const Image image = indirect(renderer, {{"bounces", "8"}, {"longest_edge", "0.1"}});
-  double sum = 0;
-  for (int y = 0; y < exact.height(); ++y)
-    for (int x = 0; x < exact.width(); ++x)
-      for (int c = 0; c < 3; ++c) sum += exact.at(x, y, c);
-  const double wanted = sum / (3.0 * exact.width() * exact.height());
-  double got = 0;
-  for (int y = 0; y < image.height(); ++y)
-    for (int x = 0; x < image.width(); ++x)
-      for (int c = 0; c < 3; ++c) got += image.at(x, y, c);
-  got /= 3.0 * image.width() * image.height();
+  const double wanted = meanLight(truth(renderer, scene, 8));
+  const double got = meanLight(indirect(renderer, {{"bounces", "8"}, {"longest_edge", "0.1"}}));
   std::printf("cornell_box, albedo 0.99, 8 bounces: %.1f %% off\n", 100 * (got / wanted - 1));
   EXPECT_NEAR(got / wanted, 1, 0.03);
+}
+
+/// Elements of the floor that lie half below a block are lit as far as they are seen, and lose light once,
+/// not twice.
+TEST_F(IlluminationSamplesTest, ElementsHalfInsideBlocksLoseLittleLight) {
+  const scene::Scene scene = whiteBox(true);
+  render::Renderer renderer(device(), scene);
+  const double wanted = meanLight(truth(renderer, scene));
+  const double got = meanLight(indirect(renderer, {{"longest_edge", "0.05"}}));
+  std::printf("cornell_box with blocks, albedo 0.99: %.1f %% off\n", 100 * (got / wanted - 1));
+  EXPECT_GE(got / wanted, 0.95) << got << " for " << wanted;
+  EXPECT_LE(got / wanted, 1.03) << got << " for " << wanted;
 }
 
 /// Extremes of lobes, cells and elements give numbers, none of them negative.

@@ -7,6 +7,7 @@
 
 #include "core/shading_maps/shading_maps.h"
 #include "tests/gpu/subtractive_harness.h"
+#include "tests/support/scene_nodes.h"
 
 namespace limn {
 namespace {
@@ -28,6 +29,28 @@ TEST_F(SubtractiveShadowsTest, WhereNothingIsHiddenTheLightIsTheUnshadowedOneToT
                               unshadowed),
             contraction())
             << combine << ' ' << block << ' ' << lights;
+}
+
+/// The lobes of metals have their light from samples or from the cache.
+TEST_F(SubtractiveShadowsTest, WhereNothingIsHiddenLobesHaveAllOfTheirLight) {
+  scene::Scene plane = floor();
+  plane.materials[0] = metal(glm::vec4(1), 0.3f);
+  const scene::Scene scene = lit(plane, sky(), 0);
+  render::Renderer renderer(device(), scene);
+  for (const char* source : {"brdf_samples", "cache"}) {
+    const auto shown = [&](const char* show, const char* block, const char* lights) {
+      return direct(
+          renderer, 37, 23,
+          {shadows({{"unshadowed", source}, {"block", block}, {"lights", lights}, {"show", show}})});
+    };
+    const Image unshadowed = shown("unshadowed", "1", "1");
+    EXPECT_GT(mean(unshadowed), 0.1) << source;
+    for (const char* block : {"1", "4", "32"})
+      for (const char* lights : {"1", "25", "200"})
+        EXPECT_LE(largestDifference(shown("light", block, lights), unshadowed),
+                  static_cast<double>(contraction()) * std::max(1.0, largest(unshadowed)))
+            << source << ' ' << block << ' ' << lights << ", of up to " << largest(unshadowed);
+  }
 }
 
 /// Where a budget of time may change the samples, passes of its own add them up: the first frame has all.
@@ -86,6 +109,33 @@ TEST_F(SubtractiveShadowsTest, LightLiesBetweenNothingAndTheUnshadowedLight) {
   }
 }
 
+TEST_F(SubtractiveShadowsTest, LightIsNoMoreThanThatOfSampledOrCachedLobes) {
+  const scene::Scene scene = lit(coarse("balls"), sky(), 0);
+  render::Renderer renderer(device(), scene);
+  for (const char* source : {"brdf_samples", "cache"}) {
+    const auto shown = [&](const char* show, const char* combine, const char* block) {
+      return direct(
+          renderer, 64, 48,
+          {shadows({{"unshadowed", source}, {"combine", combine}, {"block", block}, {"show", show}})});
+    };
+    const Image unshadowed = shown("unshadowed", "ratio", "1");
+    for (const char* combine : {"subtract", "ratio", "ratio_split"})
+      for (const char* block : {"1", "4"}) {
+        const Image light = shown("light", combine, block);
+        double least = 0, over = 0;  // over: of light over the unshadowed light, less 1
+        for (size_t i = 0; i < light.data().size(); ++i) {
+          const auto value = static_cast<double>(light.data()[i]),
+                     whole = static_cast<double>(unshadowed.data()[i]);
+          ASSERT_TRUE(std::isfinite(value)) << source << ' ' << combine << ' ' << block << ' ' << i;
+          least = std::min(least, value);
+          if (value > whole) over = std::max(over, value / whole - 1);
+        }
+        EXPECT_GE(least, 0) << source << ' ' << combine << ' ' << block;
+        EXPECT_LE(over, 1e-5) << source << ' ' << combine << ' ' << block;
+      }
+  }
+}
+
 /// U is what is hidden of it and what is left. In the middle of a block the shadow buffer has what is hidden
 /// there.
 TEST_F(SubtractiveShadowsTest, WhatIsShownAddsUpToTheUnshadowedLight) {
@@ -123,6 +173,45 @@ TEST_F(SubtractiveShadowsTest, WhatIsShownAddsUpToTheUnshadowedLight) {
                 direct(refused, kWidth, kHeight, {shadows({{"combine", "add"}, {"show", "hidden"}})});
               }),
               testing::HasSubstr("show goes with combine=subtract"));
+}
+
+/// Vertical rods one pixel wide, 50 m above the floor and below a slab behind the camera, in columns that are
+/// the middle of no block: their pixels have shadows of their own, to what 16 bits hold of a share.
+TEST_F(SubtractiveShadowsTest, RodsNarrowerThanBlocksHaveShadowsOfTheirOwn) {
+  constexpr int kWidth = 64, kHeight = 48, kSide = 4;
+  constexpr float kEye = 100, kRods = 50;
+  constexpr int kColumns[] = {5, 19, 32, 44, 57};
+  scene::Scene bare = floor();
+  scene::Node& camera = bare.nodes.back();
+  camera.transform.translation.y = kEye;
+  scene::Node slab;
+  slab.mesh = 0;
+  slab.transform.translation = {20, kEye + 5, 0};
+  slab.transform.scale = vec3(0.6f);
+  const float pixel = 2 * (kEye - kRods) * std::tan(0.5f * bare.cameras[0].yfov) / kHeight;
+  bare.nodes.push_back(slab);
+  for (const int column : kColumns) {
+    EXPECT_NE(column % kSide, kSide / 2);
+    const float x = (static_cast<float>(column) + 0.5f - 0.5f * kWidth) * pixel;
+    test::show(bare, test::quad({x, kRods, 0}, {pixel, 0, 0}, {0, 0, -100}, 0));
+  }
+  const scene::Scene scene = lit(bare, sky(), 0);
+  render::Renderer renderer(device(), scene);
+  for (const char* combine : {"subtract", "ratio", "ratio_split"}) {
+    const auto with = [&](const char* block) {
+      return direct(renderer, kWidth, kHeight, {shadows({{"combine", combine}, {"block", block}})});
+    };
+    const Image own = with("1"), blocks = with("4");
+    double off = 0, unlike = 0;  // of rods in blocks from those without; of rods from the floor to their left
+    for (int y = 0; y < kHeight; ++y)
+      for (const int x : kColumns)
+        for (int c = 0; c < 3; ++c) {
+          off = std::max(off, static_cast<double>(std::abs(blocks.at(x, y, c) - own.at(x, y, c))));
+          unlike = std::max(unlike, static_cast<double>(std::abs(own.at(x - 1, y, c) - own.at(x, y, c))));
+        }
+    EXPECT_LE(off, 1e-4) << combine << ", rods and floor differ by " << unlike;
+    EXPECT_GT(unlike, 1e-2) << combine;
+  }
 }
 
 TEST_F(SubtractiveShadowsTest, NoLightGetsIntoAClosedRoom) {
@@ -257,6 +346,31 @@ TEST_F(SubtractiveShadowsTest, BlocksCostLittleWhereSurfacesAreSmooth) {
     RecordProperty(combine, std::to_string(whole) + " " + std::to_string(blocks));
     EXPECT_LT(blocks, 1.3 * whole) << combine;
   }
+}
+
+/// 25 samples and each pixel's own shadows; the references' noise is taken off.
+TEST_F(SubtractiveShadowsTest, SharesOfLightErrLessThanSamplesAddedUp) {
+  const auto errors = [&](const scene::Scene& scene, const char* combine) {
+    render::Renderer renderer(device(), scene);
+    const Image whole = referenceWithNoise(scene, settings(128, 96, Term::direct), 256);
+    const Image truth = whole.select({"R", "G", "B"});
+    const double noise = mean(whole.select({"variance"}));
+    const auto error = [&](const char* way) {
+      const Values values{{"unshadowed", "brdf_samples"}, {"combine", way}, {"block", "1"}, {"lights", "25"}};
+      const double both = rmse(direct(renderer, 128, 96, {shadows(values)}), truth);
+      EXPECT_GT(both * both, 2 * noise) << way << ": the reference's noise, " << std::sqrt(noise);
+      return std::sqrt(std::max(both * both - noise, 0.0));
+    };
+    return std::pair(error("add"), error(combine));
+  };
+  for (const float degrees : {0.f, 72.f}) {
+    scene::Scene spheres = asset("nine_spheres");
+    spheres.environment.rotation += degrees * glsl::pi / 180;
+    const auto [added, split] = errors(spheres, "ratio_split");
+    EXPECT_GE(added / split, 1.8) << degrees << " degrees: added up " << added << ", ratio_split " << split;
+  }
+  const auto [added, ratio] = errors(asset("arcade_dark"), "ratio");
+  EXPECT_LE(ratio / added, 1.2) << "arcade_dark: added up " << added << ", ratio " << ratio;
 }
 
 /// Pictures smaller than a block, one light, a single bright texel, lobes as sharp as they get: nothing is

@@ -135,6 +135,14 @@ TEST(FourierShadow, NormalisedVisibilityOfTwoPlanesIsExact) {
                   1 - share, 1e-5f);
     }
   }
+  // Where the series of what blocks is above 1, V is limited to 0 before it is normalised.
+  const auto above = static_cast<float>(fourierSeries(c.delta - 0.2, 4, FourierWindow::none));
+  ASSERT_LT(above, -0.09f);
+  for (const float share : {0.f, 0.25f, 0.75f, 1.f}) {
+    const float v = glsl::fourier_normalised(glsl::fourier_visibility(1 - share * (1 - above), 1),
+                                             glsl::fourier_visibility(above, 1), 0.02f);
+    EXPECT_NEAR(v, 1 - share, c.overshoot) << share;
+  }
 }
 
 TEST(FourierShadow, RandomKernelsGiveFiniteVisibilityWithinBounds) {
@@ -152,6 +160,16 @@ TEST(FourierShadow, RandomKernelsGiveFiniteVisibilityWithinBounds) {
         const float v = glsl::fourier_visibility(r.lit, static_cast<float>(c.gain));
         ASSERT_TRUE(v >= 0 && v <= 1);
         ASSERT_TRUE(std::isfinite(r.blockedDepth));
+        if (window == FourierWindow::fejer) {
+          // Its series lies within [0, 1], so that the mean depth of what blocks lies between those of the
+          // texels, but for the rounding of sums, over 1 - s, which is at least 0.0025 with 64 terms.
+          const auto [nearest, farthest] =
+              std::ranges::minmax(texels, {}, [](const vec2& texel) { return texel.x; });
+          const float depth = r.blockedDepth / (1 - r.lit), rounding = 3e-6f / (1 - r.lit);
+          ASSERT_LE(r.lit, 1) << order;
+          ASSERT_GE(depth, nearest.x - rounding) << order << " terms, d " << d << ", 1 - s " << 1 - r.lit;
+          ASSERT_LE(depth, farthest.x + rounding) << order << " terms, d " << d << ", 1 - s " << 1 - r.lit;
+        }
         const float p = std::pow(v, glsl::fourier_sharpening(d, 30, 20));
         ASSERT_TRUE(p >= 0 && p <= v);
         for (const float response : {0.f, 0.5f, 1.f}) {

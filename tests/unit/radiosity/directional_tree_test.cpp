@@ -23,6 +23,29 @@ TEST(DirectionalTree, KeepsTheFluxOfLobes) {
   }
 }
 
+/// A red and a blue lobe of the same strength share one tree, whose cells follow the luminance of both. To it
+/// blue is 0.34 as strong as red: where all of its error of 0.1 lies in one of them, red errs by 0.1 sqrt(1 +
+/// 0.34^2), blue by 0.1 sqrt(1 + 1 / 0.34^2). Cells of equal errors leave blue sqrt(1 / 0.34) = 1.7 times
+/// red's.
+TEST(DirectionalTree, IsRefinedByTheLuminanceOfAllColours) {
+  const GlossyLobes lobes = lobesOf(0.3f, {lightFrom(20, {1, 0, 0}), lightFrom(60, {0, 0, 1})});
+  TreeBuilder builder;
+  DirectionalTree tree;
+  builder.build(lobes, {}, tree);
+  const auto errorOfColour = [&](int c) {
+    return errorOf([&](const glm::vec3& w) { return glm::vec3(tree.value(w)[c]); },
+                   [&](const glm::vec3& w) { return glm::vec3(lobes.radiance(w)[c]); }, 256);
+  };
+  const double all = errorOf(tree, lobes), red = errorOfColour(0), blue = errorOfColour(2);
+  std::printf("red and blue: error %.4f of luminance, %.4f of red, %.4f of blue; cells %zu\n", all, red, blue,
+              tree.cellCount());
+  EXPECT_LE(all, 0.105) << "red " << red << ", blue " << blue;
+  EXPECT_LE(red, 0.106) << "luminance " << all << ", blue " << blue;
+  EXPECT_LE(blue, 0.31) << "luminance " << all << ", red " << red;
+  EXPECT_GT(blue, 1.2 * red) << "luminance " << all;
+  EXPECT_EQ(tree.flux().y, 0);
+}
+
 TEST(DirectionalTree, IsZeroBelowTheHorizonAndWithoutLight) {
   const DirectionalTree tree = glossyTree(), none;
   EXPECT_EQ(tree.value({0.1f, 0.2f, -0.9f}), glm::vec3(0));

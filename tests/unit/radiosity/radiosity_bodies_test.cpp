@@ -156,10 +156,10 @@ TEST(RadiosityBodiesTest, CoarseMeshesLeakLittle) {
     const World sphere({sphereMesh({0, 0, 0}, 1, n, -1)}, {}), room({roomMesh(n)}, {});
     const double intoSphere = sphere.mean(sphere.received({0}, 1), 0),
                  intoRoom = room.mean(room.received({0}, 1), 0);
-    std::printf("leaks: sphere of %zu surfels %.4f, room of %zu %.4f\n", sphere.surfels.size(), intoSphere,
+    std::printf("leaks: sphere of %zu surfels %.6f, room of %zu %.6f\n", sphere.surfels.size(), intoSphere,
                 room.surfels.size(), intoRoom);
-    EXPECT_LT(intoSphere, 1e-3);
-    EXPECT_LT(intoRoom, 1e-3);
+    EXPECT_LT(intoSphere, 2e-4) << sphere.surfels.size() << " surfels";
+    EXPECT_LT(intoRoom, 2e-4) << room.surfels.size() << " surfels";
   }
 }
 

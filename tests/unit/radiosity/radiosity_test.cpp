@@ -1,5 +1,6 @@
 // Implicit visibility on the CPU against closed forms: areas, form factors, white furnaces; and its hierarchy
 // against all pairs.
+#include <fmt/format.h>
 #include <gtest/gtest.h>
 
 #include <algorithm>
@@ -354,32 +355,40 @@ TEST(RadiosityTest, AFurnaceConvergesFromBelow) {
       pullUp(world.forest, outgoing);
       const auto table = binTable(world.links.resolution());
       const float exact = 1 / (1 - albedo);
-      const auto within = [&](float share) {
-        return std::ranges::all_of(world.forest.leafOf(),
-                                   [&](uint32_t l) { return outgoing[l].x > (1 - share) * exact; });
-      };
-      int one = 0, tenth = 0, bounce = 1;
-      for (; bounce <= 720 && tenth == 0; ++bounce) {
+      float low = 0, high = 0;  // of what leaves give, in parts of the exact
+      std::vector<float> lows;  // after each bounce
+      const int bounces = static_cast<int>(std::ceil(std::log(1e-5) / std::log(double(albedo))));
+      for (int bounce = 0; bounce < bounces; ++bounce) {
         gather(world.forest, world.links, table, outgoing, {}, irradiance);
-        for (const uint32_t leaf : world.forest.leafOf())
+        low = 1e9f, high = 0;
+        for (const uint32_t leaf : world.forest.leafOf()) {
           outgoing[leaf] = emission[leaf] + albedo * irradiance[leaf] * glsl::inverse_pi;
+          low = std::min(low, outgoing[leaf].x / exact);
+          high = std::max(high, outgoing[leaf].x / exact);
+        }
         pullUp(world.forest, outgoing);
-        if (one == 0 && within(0.01f)) one = bounce;
-        if (within(0.001f)) tenth = bounce;
+        lows.push_back(low);
       }
-      float low = 1e9f, high = 0;
-      for (const uint32_t leaf : world.forest.leafOf()) {
-        low = std::min(low, outgoing[leaf].x);
-        high = std::max(high, outgoing[leaf].x);
-      }
-      std::printf("%s, albedo %g: %.4f to %.4f of E / (1 - albedo), 1 %% after %d, 0.1 %% after %d bounces\n",
-                  c.name, albedo, low / exact, high / exact, one, tenth);
-      EXPECT_GT(low / exact, 0.98);
-      EXPECT_LT(high / exact, 1 + 1e-4);
+      /// Bounces until all leaves give more than that part of the exact; 0: they never do.
+      const auto until = [&](float part) {
+        const auto found = std::ranges::find_if(lows, [part](float share) { return share > part; });
+        return found == lows.end() ? 0 : static_cast<int>(found - lows.begin()) + 1;
+      };
+      const int one = until(0.99f), tenth = until(0.999f * low);
+      const std::string what = fmt::format(
+          "{}, albedo {}: {:.4f} to {:.4f} of E / (1 - albedo), 1 % after {} bounces, 0.1 % of its own "
+          "limit after {}",
+          c.name, albedo, low, high, one, tenth);
+      std::printf("%s\n", what.c_str());
+      EXPECT_GT(low, 0.995) << what;
+      EXPECT_LT(high, 1 + 1e-4) << what;
       // After k bounces albedo^(k + 1) is missing, and up to 0.4 % for good: log(0.006) is 1.11 log(0.01).
       const double least = std::log(0.01) / std::log(double(albedo));
-      EXPECT_GE(one, std::floor(least));
-      EXPECT_LT(one, 1.15 * least);
+      EXPECT_GE(one, std::floor(least)) << what;
+      EXPECT_LT(one, 1.15 * least) << what;
+      // 9, 65 and 687 bounces.
+      EXPECT_GT(tenth, 0) << what;
+      EXPECT_LE(tenth, 1.15 * std::floor(std::log(0.001) / std::log(double(albedo)))) << what;
     }
   }
 }

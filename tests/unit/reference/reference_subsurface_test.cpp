@@ -81,6 +81,31 @@ TEST(ReferenceSubsurface, DipoleOfAnEvenlyLitPlaneReflectsItsWhole) {
   }
 }
 
+/// Two wide faces of one body, lit alike: each has the light of its own, and of the other what the profile
+/// has beyond their distance. Where they all but touch that is twice the whole.
+TEST(ReferenceSubsurface, DipoleOfFacesLitAlikeIsUpToTwiceItsWhole) {
+  constexpr float kExtinction = 300, kAbsorption = 0.05f;
+  const glsl::DiffusionDipole profile = dipole(kAbsorption);
+  const auto whole = static_cast<double>(profile.reflectance);
+  for (const float meanPaths : {0.03f, 1.f, 3.f, 10.f}) {
+    const float distance = meanPaths / kExtinction;
+    World world;
+    world.addInstance(world.addMesh(
+        box({0.8f, distance, 0.8f}, addTranslucent(world, vec3(kExtinction), vec3(kAbsorption), kIor))));
+    for (const float side : {-1.f, 1.f})
+      world.addLight(glsl::light_directional, vec3(0), {0, side, 0}, vec3(1));
+    world.camera = distantCamera(1, 0.01f);
+    const Measured m = measured(picture(world, SubsurfaceModel::bssrdf, 16, 256));
+    const double unit = entry(1) * exitAt(1) * whole;
+    const double expected = 2 - static_cast<double>(glsl::diffusion_dipole_share(profile, meanPaths));
+    EXPECT_NEAR(m.mean / unit, expected, 1e-3 + 4 * m.deviation / unit) << meanPaths << " mean free paths";
+    EXPECT_LT(m.deviation, 0.01 * unit) << meanPaths;
+    if (meanPaths < 0.1f) {
+      EXPECT_GT(m.mean / unit, 1.9) << meanPaths;
+    }
+  }
+}
+
 /// A straight shadow edge: the light that crosses it is the integral of the profile over the lit half.
 TEST(ReferenceSubsurface, DipoleCrossesAShadowEdge) {
   constexpr float kExtinction = 300, kAbsorption = 0.05f;

@@ -2,6 +2,8 @@
 
 #include <gtest/gtest.h>
 
+#include <utility>
+
 #include "core/base/error.h"
 #include "core/relief/horizon.h"
 #include "tests/support/relief_bounces.h"
@@ -119,6 +121,17 @@ TEST(ReliefBounceTest, FurnaceIsOne) {
     }
     EXPECT_NEAR(last, 1, 1e-3);
   }
+}
+
+/// Weights add up to pi for any directions, so that a furnace becomes 1 with those above the base as well:
+/// only how fast it does tells that walls below it are seen.
+TEST(ReliefBounceTest, AFurnaceFillsAsFastAsWallsHideTheSky) {
+  const HeightField field = eggCrate(64, 0.94);
+  const BouncePaths paths = traceBounces(field, BounceDirections::ownFrame, 64);
+  const std::vector<double> dark(field.texels(), 0.0);
+  for (const auto& [bounces, expected] :
+       {std::pair(1, 0.742), std::pair(2, 0.922), std::pair(4, 0.992), std::pair(8, 0.9999)})
+    EXPECT_NEAR(meanOf(bounce(field, paths, dark, 1, 1, bounces)), expected, 0.01) << bounces << " bounces";
 }
 
 TEST(ReliefBounceTest, SixtyFourPathsOfTheOwnFrameAreEnough) {
