@@ -145,9 +145,10 @@ void addWork(Hasher& h, const Request& r) {
   if (r.reliefPaths != ReliefPaths::both) h.addAll(reliefPathsFollow, r.reliefPaths);
   constexpr uint32_t subsurfaceModelFollows = 0x5b5f;
   if (r.subsurface != SubsurfaceModel::bssrdf) h.addAll(subsurfaceModelFollows, r.subsurface);
-  constexpr uint32_t causticVersion = 3;
+  constexpr uint32_t causticVersion = 4;
   const bool caustics = r.term == Term::final || r.term == Term::caustic || r.term == Term::media;
-  if (caustics && std::ranges::any_of(r.scene.materials, &scene::Material::specularSurface))
+  const bool chains = r.term == Term::specular && r.interfaces == kAllInterfaces;
+  if ((caustics || chains) && std::ranges::any_of(r.scene.materials, &scene::Material::specularSurface))
     h.add(causticVersion);
   constexpr uint32_t airlightVersion = 0xa162;
   const bool air = r.term == Term::final || r.term == Term::media;

@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
+#include <optional>
 
 #include "core/reference/private/optics.h"
 #include "core/reference/private/specular_paths.h"
@@ -146,7 +147,7 @@ void LightTracer::follow(const Path& path, const Sampler& sampler, Film& film) c
   const auto adjoint = [&](const glm::vec3& leaving) {
     return glsl::shading_flux(s.normal, s.geometricNormal, path.direction, leaving);
   };
-  if (!s.back)
+  if (!s.back || !(optics.thickness > 0))  // a sheet has no within
     segment(before, event.reflected, path.flux * event.reflectance * adjoint(event.reflected), sampler, film);
   if (event.refracted == glm::vec3(0)) return;
   const glm::vec3 passing = path.flux * event.transmittance * adjoint(event.refracted);
@@ -208,12 +209,17 @@ void LightTracer::wander(const Path& path, const Sampler& sampler, Film& film) c
     Hit hit;
     if (!view_.rays.nearest(from, direction, hit))
       return arrive(from, direction, flux, nullptr, sampler, film);
+    const std::optional<glsl::Optics> body = bodyBehind(optics, s.back, mirrored);
     const scene::Material& material = *view_.rays.draws()[hit.draw].material;
-    if (!material.specularSurface()) return arrive(from, direction, flux, &hit, sampler, film);
+    if (!material.specularSurface()) {
+      if (!body) return arrive(from, direction, flux, &hit, sampler, film);
+      if (surfaces_) reflect(hit, direction, flux * glsl::optics_absorption(*body, hit.depth), film);
+      return;
+    }
     s = interfaceAt(view_.rays, hit, direction);
-    const glsl::Optics met = opticsOf(material, s.baseColour, s.metallic);
-    if (s.back && met.thickness > 0) {  // what lies before its back is its inside
-      flux *= glsl::optics_absorption(met, hit.depth);
+    const auto crossed = bodyBefore(opticsOf(material, s.baseColour, s.metallic), s.back, body);
+    if (crossed) {
+      flux *= glsl::optics_absorption(*crossed, hit.depth);
     } else {
       arrive(from, direction, flux, &hit, sampler, film);  // the medium alone: it reflects nothing
       flux *= view_.rays.medium().transmittanceBetween(from, s.position);

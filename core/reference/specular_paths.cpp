@@ -47,11 +47,13 @@ SpecularEnd SpecularPaths::backgroundAlong(const Ray& ray, const glm::vec3& from
           environment_.radiance(ray.direction)};
 }
 
-/// At a surface that is not specular; `from`: where the medium begins.
-SpecularEnd SpecularPaths::endAt(const Ray& ray, const Hit& hit, const glm::vec3& from) const {
+/// At a surface that is not specular; `from`: where the medium begins, unless the way lies within a body.
+SpecularEnd SpecularPaths::endAt(const Ray& ray, const Hit& hit, const glm::vec3& from,
+                                 const std::optional<glsl::Optics>& body) const {
   std::optional<Surface> surface = surfaceAlong(rays_, hit, ray.direction);
   if (!surface) return {};
-  const glm::vec3 passes = rays_.medium().transmittanceBetween(from, surface->position);
+  const glm::vec3 passes = body ? glsl::optics_absorption(*body, hit.depth)
+                                : rays_.medium().transmittanceBetween(from, surface->position);
   return {ray.throughput * doubles(passes), surface};
 }
 
@@ -60,7 +62,8 @@ SpecularEnd SpecularPaths::matteAlong(const Ray& ray) const {
   Ray rest = ray;
   Hit hit;
   for (int i = 0; i < kMostEvents && rays_.nearest(rest.origin, rest.direction, hit); ++i) {
-    if (!rays_.draws()[hit.draw].material->specularSurface()) return endAt(ray, hit, ray.origin);
+    if (!rays_.draws()[hit.draw].material->specularSurface())
+      return endAt(ray, hit, ray.origin, std::nullopt);
     const Interface passed = interfaceAt(rays_, hit, rest.direction);
     rest.origin = passed.position - passed.rayOffset * passed.geometricNormal;
   }
@@ -103,7 +106,9 @@ std::array<SpecularEnd, 2> SpecularPaths::imageSpace(const Surface& seen) const 
 }
 
 SpecularEnd SpecularPaths::sample(const Surface& seen, const Sampler& sampler) const {
-  First first(seen, *rays_.draws()[seen.draw].material);
+  const First first(seen, *rays_.draws()[seen.draw].material);
+  glsl::Optics optics = first.optics;
+  bool back = first.inside;
   glsl::SpecularEvent event = first.event;
   Ray ray{seen.position, -seen.view, glm::dvec3(1)};
   glm::vec3 position = seen.position, away = seen.rayOffset * seen.values.geometric_normal;
@@ -125,15 +130,17 @@ SpecularEnd SpecularPaths::sample(const Surface& seen, const Sampler& sampler) c
     ray.origin = position + (mirrored ? 1.f : -1.f) * away;
     Hit hit;
     if (!rays_.nearest(ray.origin, ray.direction, hit)) return backgroundAlong(ray, ray.origin);
+    const std::optional<glsl::Optics> body = bodyBehind(optics, back, mirrored);
     const scene::Material& material = *rays_.draws()[hit.draw].material;
-    if (!material.specularSurface()) return endAt(ray, hit, ray.origin);
+    if (!material.specularSurface()) return endAt(ray, hit, ray.origin, body);
     const Interface met = interfaceAt(rays_, hit, ray.direction);
     if (!(glm::dot(met.normal, -ray.direction) > kLeastCosine)) return {};
-    const glsl::Optics optics = opticsOf(material, met.baseColour, met.metallic);
-    const bool body = met.back && optics.thickness > 0;  // what lies before its back is its inside
-    ray.throughput *= doubles(body ? glsl::optics_absorption(optics, hit.depth)
-                                   : rays_.medium().transmittanceBetween(ray.origin, met.position));
-    event = glsl::specular_event(optics, ray.direction, met.normal, met.back);
+    optics = opticsOf(material, met.baseColour, met.metallic);
+    back = met.back;
+    const std::optional<glsl::Optics> crossed = bodyBefore(optics, back, body);
+    ray.throughput *= doubles(crossed ? glsl::optics_absorption(*crossed, hit.depth)
+                                      : rays_.medium().transmittanceBetween(ray.origin, met.position));
+    event = glsl::specular_event(optics, ray.direction, met.normal, back);
     position = met.position;
     away = met.rayOffset * met.geometricNormal;
   }

@@ -28,6 +28,7 @@ Surface whiteSurface(const SurfacePoint& point, float clearance) {
   s.position = point.position;
   s.view = point.normal;
   s.rayOffset = clearance;
+  s.draw = glsl::no_instance;
   s.values.normal = s.values.geometric_normal = point.normal;
   s.values.base_colour = glm::vec3(1);
   s.values.roughness = 1;

@@ -168,7 +168,7 @@ vec3 exit_triangle(BodyExit leaves) {
 }
 
 CausticRay reflected_ray(Medium medium, SceneMaps maps, Incident at, SpecularEvent event) {
-  if (at.inside) return no_ray();
+  if (at.inside && at.optics.thickness > 0.0) return no_ray();  // a sheet has no within
   float adjoint = shading_flux(at.normal, at.geometric, at.direction, event.reflected);
   return ray_from(medium, maps, at, at.position, event.reflected, at.flux * event.reflectance * adjoint);
 }

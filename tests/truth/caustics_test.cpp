@@ -70,6 +70,29 @@ TEST_F(CausticTruth, AMirrorWithTiltedNormalsIsAsBrightAsTheSun) {
   }
 }
 
+/// A mirror that is a sheet reflects alike from its back: to both sides of it the sun's whole light goes on.
+TEST_F(CausticTruth, AMirrorIsAsBrightFromItsBack) {
+  const dvec3 light = glm::normalize(dvec3(1, 0, -1)), leaves(light.x, 0, -light.z);
+  for (const float side : {1.f, -1.f}) {
+    SCOPED_TRACE(side);
+    scene::Scene scene;
+    scene::Material mirror = test::silver();
+    mirror.doubleSided = true;
+    test::show(scene, test::quad({0, 0, 0}, {1, 0, 0}, {0, side, 0}, test::addMaterial(scene, mirror)));
+    addWall(scene, {-1, 0, 0});
+    test::shine(scene, test::lamp(glsl::light_directional, float(kSun)), vec3(0), vec3(light));
+    const auto expected = [&](const dvec3& p, const dvec3&) {
+      return fullyLit(p, leaves) ? kGround / M_PI * kSun * leaves.x : nothing;
+    };
+    Question q = question(towardsWall(leaves), 128);
+    expectPicture(scene, q, expected, {.average = 0.02, .pixels = 300});
+    for (const int interfaces : {0, reference::kAllInterfaces}) {
+      q.interfaces = interfaces;
+      expectReference(scene, q, expected, {.average = 0.2, .pixels = 300});
+    }
+  }
+}
+
 /// The sun through a plate of glass, 0.2 m thick, whose front may have tilted normals: Snell's directions,
 /// Fresnel's losses at both sides and Beer's on the way; where a shading normal bends light, its beam's
 /// radiance is kept (over the squared index), so that the irradiance across it changes as its solid angle

@@ -42,7 +42,8 @@ class SpecularPaths {
     glm::dvec3 throughput;
   };
   SpecularEnd matteAlong(const Ray& ray) const;
-  SpecularEnd endAt(const Ray& ray, const Hit& hit, const glm::vec3& from) const;
+  SpecularEnd endAt(const Ray& ray, const Hit& hit, const glm::vec3& from,
+                    const std::optional<glsl::Optics>& body) const;
   SpecularEnd backgroundAlong(const Ray& ray, const glm::vec3& from) const;
   SpecularEnd throughBody(const Surface& seen, const glsl::Optics& optics, Ray ray) const;
 

@@ -32,7 +32,7 @@ struct Surface {
   glm::vec3 view{0};      ///< unit, towards the camera or the surface that the ray came from
   float depth = 0;        ///< along the camera's axis, metres; 0 behind the first surface
   float rayOffset = 0;    ///< Draw::rayOffset
-  uint32_t draw = 0;
+  uint32_t draw = 0;      ///< no_instance: a point that belongs to none
   glsl::GBufferSurface values{};
   glsl::SurfaceBrdf brdf{};  ///< metallic-roughness; of no account where there is a model
   /// Takes the place of the diffuse part of `brdf`, which then only directs samples; translucent surfaces

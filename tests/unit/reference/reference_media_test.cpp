@@ -329,6 +329,37 @@ TEST(ReferenceCaustic, LightFromWithinABodyIsAbsorbedThereAndMeetsNoMedium) {
   }
 }
 
+/// A plate 1 m behind the front of a slab of glass, which the sun meets head-on, seen from within the slab.
+TEST(ReferenceCaustic, AMatteThingInABodyIsLitThroughItAlone) {
+  World world;
+  const int glass = addClearGlass(world, 1.5f);
+  scene::Primitive slab = World::quad({0, 0, 0}, {2, 0, 0}, {0, 2, 0}, glass);
+  const scene::Primitive back = World::quad({0, 0, -2}, {2, 0, 0}, {0, -2, 0}, glass);
+  slab.positions.insert(slab.positions.end(), back.positions.begin(), back.positions.end());
+  slab.normals.insert(slab.normals.end(), back.normals.begin(), back.normals.end());
+  slab.uvs.insert(slab.uvs.end(), back.uvs.begin(), back.uvs.end());
+  for (const uint32_t index : back.indices) slab.indices.push_back(4 + index);
+  world.addInstance(world.addMesh(slab));
+  world.addQuad({0, 0, -1}, {1, 0, 0}, {0, 1, 0}, world.addMaterial(vec3(0.5f)));
+  world.addLight(glsl::light_directional, {0, 0, 0}, {0, 0, -1}, vec3(1));
+  world.pose.bounds = {vec3(-2), vec3(2)};
+  world.camera = scene::lookAt({0, 0, -0.5f}, {0, 0, -1}, 0.1f);
+  scene::Material& body = world.scene.materials[static_cast<size_t>(glass)];
+  const auto lit = [&](float absorbs, float sigma) {
+    body.attenuationColour = vec3(absorbs);
+    body.attenuationDistance = absorbs < 1 ? 1.f : 0.f;
+    world.scene.medium.sigmaA = vec3(sigma);
+    Request request = world.request(1, Term::caustic, 1 << 18);
+    request.interfaces = kAllInterfaces;
+    return double(render(request).image.at(0, 0, 0));
+  };
+  const double clear = lit(1, 0);
+  ASSERT_GT(clear, 0);
+  EXPECT_NEAR(lit(0.5f, 0) / clear, 0.5, 1e-3);
+  // From the medium's border, at the root of 12, to the front; and from the plate to the camera.
+  EXPECT_NEAR(lit(1, 0.5f) / clear, std::exp(-0.5 * (std::sqrt(12) + 0.5)), 1e-3);
+}
+
 TEST(ReferenceCaustic, ThereIsNoneWithoutSpecularSurfacesOrLight) {
   World world = floorWorld();
   world.addLight(glsl::light_point, {0, 1, 0}, {0, -1, 0}, vec3(1));

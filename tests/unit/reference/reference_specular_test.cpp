@@ -205,15 +205,18 @@ TEST(ReferenceSpecular, AThinWallTintsAndDoesNotBend) {
 }
 
 /// A prism of 45 degrees: through a leg, off the other side of the glass, out through the other leg.
-TEST(ReferenceSpecular, APrismReflectsTotally) {
-  World world;
-  const Wall wall(world, {4, 0, -1}, {-1, 0, 0});
-  const int glass = addGlass(world, 1.5f);
+void addPrism(World& world, int glass) {
   const vec3 across = glm::normalize(vec3(1, 0, -1));
   world.addInstance(
       world.addMesh(joined({World::quad({0, 0, 0}, {2, 0, 0}, {0, 2, 0}, glass),
                             World::quad({1, 0, -1}, {0, 0, -2}, {0, 2, 0}, glass),
                             World::quad({0, 0, -1}, {0, 2, 0}, std::sqrt(8.f) * across, glass)})));
+}
+
+TEST(ReferenceSpecular, APrismReflectsTotally) {
+  World world;
+  const Wall wall(world, {4, 0, -1}, {-1, 0, 0});
+  addPrism(world, addGlass(world, 1.5f));
   world.camera = scene::lookAt({0, 0.2f, 3}, {0, 0.2f, 0}, 0.01f);
   EXPECT_EQ(render(specularRequest(world, 3, 2)).image.at(1, 1, 0), 0.f) << "it takes three interfaces";
   for (const int interfaces : {3, 8}) {
@@ -249,6 +252,36 @@ TEST(ReferenceSpecular, TheMediumDimsWhatIsSeenBehindTheGlass) {
   for (int c = 0; c < 3; ++c)
     EXPECT_NEAR(double(dim.at(4, 4, c)) / double(clear.at(4, 4, c)),
                 std::exp(-double(slab.world.scene.medium.sigmaA[c]) * way), 2e-3);
+}
+
+/// A black plate that shines, 1 m behind the front of a slab, or 1.5 m into a prism and behind its total
+/// reflection, is seen through as much glass, which no medium fills.
+TEST(ReferenceSpecular, WithoutLimitAMatteThingInGlassIsSeenThroughItAlone) {
+  const auto addPlate = [](World& world, const vec3& place, const vec3& u) {
+    scene::Material& glass = world.scene.materials.back();
+    glass.attenuationColour = vec3(0.5f);
+    glass.attenuationDistance = 1;
+    const int plate = world.addMaterial(vec3(0));
+    world.scene.materials.back().emission = vec3(1);
+    world.addQuad(place, u, {0, 1, 0}, plate);
+    world.camera = scene::lookAt({0, 0.1f, 0.5f}, {0, 0.1f, 0}, 0.01f);
+  };
+  World slab, prism;
+  const int glass = addGlass(slab, 1.5f);
+  slab.addInstance(slab.addMesh(joined({World::quad({0, 0, 0}, {6, 0, 0}, {0, 6, 0}, glass),
+                                        World::quad({0, 0, -2}, {6, 0, 0}, {0, -6, 0}, glass)})));
+  addPlate(slab, {0, 0, -1}, {1, 0, 0});
+  addPrism(prism, addGlass(prism, 1.5f));
+  addPlate(prism, {0.5f, 0, -1}, {0, 0, 1});
+  const auto seen = [](const World& world) {
+    return double(render(specularRequest(world, 3, kAllInterfaces, 16384)).image.at(1, 1, 0));
+  };
+  for (const float sigma : {0.f, 1.f}) {
+    slab.scene.medium.sigmaA = prism.scene.medium.sigmaA = vec3(sigma);
+    const double before = std::exp(-0.5 * double(sigma));
+    EXPECT_NEAR(seen(slab) / before, 0.96 * 0.5, 3e-3) << sigma;
+    EXPECT_NEAR(seen(prism) / before, 0.96 * std::pow(0.5, 1.5), 3e-3) << sigma;
+  }
 }
 
 TEST(ReferenceSpecular, TermsSumToTheFinalPicture) {

@@ -7,6 +7,7 @@
 #include <limits>
 
 #include "core/base/error.h"
+#include "core/reference/vertices.h"
 #include "glsl/surface/brdf.glsl"
 #include "tests/support/reference_scene.h"
 
@@ -96,6 +97,27 @@ TEST(ReferenceDirect, HalfBlockedRectangle) {
   request.light = 0;
   const Result visibility = render(request);
   EXPECT_LT(meanRelativeError(world, visibility.image, "V", [](const glm::dvec3&) { return 0.5; }), kBound);
+}
+
+/// Points at vertices belong to no draw instance: the quad that is a light lights them as the first and as
+/// the last one, by four corners (Howell, A Catalog of Radiation Heat Transfer Configuration Factors, B-3).
+TEST(ReferenceVertices, AnEmissiveQuadLightsThemWhicheverInstanceItIs) {
+  constexpr double radiance = 8.33, height = 0.8, a = 0.3 / height, b = 0.2 / height;
+  const double p = std::sqrt(1 + a * a), q = std::sqrt(1 + b * b);
+  const double expected = radiance * 4 * 0.5 * (a / p * std::atan(b / p) + b / q * std::atan(a / q));
+  for (const uint32_t own : {0u, 1u}) {
+    World world;
+    const int material = world.addMaterial(glm::vec3(0));
+    const auto addFloor = [&] { world.addQuad({0, 0, 0}, {2, 0, 0}, {0, 0, -2}, material); };
+    if (own == 1) addFloor();
+    world.addQuad({0, float(height), 0}, {0.6f, 0, 0}, {0, 0, 0.4f}, material);
+    if (own == 0) addFloor();
+    world.addRectangle({0, float(height), 0}, {0.6f, 0, 0}, {0, 0, -0.4f}, float(radiance)).own_instance =
+        own;
+    const SurfacePoint below{.position = {0, 0, 0}, .normal = {0, 1, 0}};
+    const auto irradiance = irradianceAt(world.request(1, Term::direct, 4096), {&below, 1}, 1e-4f);
+    EXPECT_NEAR(double(irradiance.at(0).x) / expected, 1, 0.005) << own;
+  }
 }
 
 TEST(ReferenceVisibility, PenumbraOfAnEdge) {
