@@ -54,6 +54,8 @@ class Shadow {
 
 void addLight(const glsl::Light& light, const LitPlace& place, const Occlusion& occlusion, int rays,
               LightAtPlace& sum) {
+  // A flat light does not see itself; rounding must not decide on which side of itself it lies.
+  if (light.own_instance != glsl::no_instance && light.own_instance == place.instance) return;
   const glsl::LightView view = glsl::light_view(light, place.position, place.normal, -1);
   if (view.masked) return;
   glsl::SurfaceBrdf white{};
@@ -117,7 +119,8 @@ void lightLeaves(const SceneElements& elements, std::span<const glsl::Light> lig
                          .normal = leaf.normal,
                          .alpha = solver.glossy(slot) ? solver.brdf(slot).alpha : 1,
                          .clearance = space.radius() * solver.clearance(slot),
-                         .seed = slot};
+                         .seed = slot,
+                         .instance = elements.forest().groups()[i / 4].object};
     LightAtPlace sum;
     for (const glsl::Light& light : lights) addLight(light, place, occlusion, rays, sum);
     for (glsl::IncidentLight& incident : sum.incident)

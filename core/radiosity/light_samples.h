@@ -16,9 +16,10 @@ namespace limn::radiosity {
 /// Holds a place that lights shine on, in world space.
 struct LitPlace {
   glm::vec3 position{0}, normal{0, 0, 1};
-  float alpha = 1;      ///< of its lobe: lights that are wide for it are taken in pieces
-  float clearance = 0;  ///< of rays, m
-  uint32_t seed = 0;    ///< of the places that rays end at
+  float alpha = 1;                        ///< of its lobe: lights that are wide for it are taken in pieces
+  float clearance = 0;                    ///< of rays, m
+  uint32_t seed = 0;                      ///< of the places that rays end at
+  uint32_t instance = glsl::no_instance;  ///< that it is on
 };
 
 /// Holds the light of lights at a place, in world space.
@@ -28,7 +29,8 @@ struct LightAtPlace {
 };
 
 /// Adds the light of a light: exact where nothing hides it, and hidden by `rays` rays or more to an extended
-/// light, to strata of its area. Light below the horizon does not arrive.
+/// light, to strata of its area. Light below the horizon does not arrive, nor does that of the instance that
+/// the place is on.
 LIMN_API void addLight(const glsl::Light& light, const LitPlace& place, const Occlusion& occlusion, int rays,
                        LightAtPlace& sum);
 

@@ -154,6 +154,9 @@ TextureHandle Deferred::addLights(const Frame& frame, TextureHandle before, cons
   frame::PassBuilder builder = frame.graph.addPass("accumulate lights");
   gpu::ProgramDesc desc = readLights(builder, frame, "glsl/deferred/light_accumulate.comp.glsl", batch);
   builder.read(maps_.ltcTable(), Access::sampled, "ltc_table", "glossy light of rectangles");
+  if (!frame.handles.models)
+    builder.read(frame.gbuffer.instance, Access::sampled, kGBufferNames.instance,
+                 "a light does not see itself");
   const TextureHandle radiance = builder.write(before, Access::imageLoadStore, "radiance",
                                                batch.relief ? "sum of L_u V W" : "sum of L_u V");
   const scene::LightTextureInput textures(frame.handles);

@@ -11,6 +11,7 @@ layout(std430) writeonly buffer Outgoing { vec4 outgoing[]; };  // the same, to 
 #if LIGHTS
 layout(std430) readonly buffer Indices { uint indices[]; };
 layout(std430) readonly buffer Seen { float seen[]; };
+layout(std430) readonly buffer Groups { ElementGroup groups[]; };
 #endif
 #if ENVIRONMENT && !GLOSSY
 layout(std430) readonly buffer Sky { vec4 sky[]; };
@@ -39,8 +40,11 @@ void main() {
   vec3 sum = vec3(0.0);
   if (sends) {
 #if LIGHTS
-    for (uint l = 0u; l < light_count; ++l)
+    for (uint l = 0u; l < light_count; ++l) {
+      // A flat light does not see itself; rounding must not decide on which side of itself it lies.
+      if (lights[indices[l]].own_instance == groups[slot / 4u].object) continue;
       sum += seen[l * slots + slot] * unshadowed_light(lights[indices[l]], surface, leaf.position.xyz, n, n, view);
+    }
 #endif
 #if ENVIRONMENT && !GLOSSY
     sum += leaf.albedo * sky[slot].rgb * inverse_pi;

@@ -88,7 +88,8 @@ LightPasses::Sent LightPasses::directLight(const PassRequest& r, std::span<const
       .cacheable();
   if (seen)
     pass.read(seen->handles.seen, Access::storageLoad, "Seen", "V of each light")
-        .read(seen->handles.indices, Access::storageLoad, "Indices", "which lights");
+        .read(seen->handles.indices, Access::storageLoad, "Indices", "which lights")
+        .read(elements_.groups, Access::storageLoad, "Groups", "a light does not see itself");
   if (sky && !glossy) pass.read(skyIrradiance, Access::storageLoad, "Sky", "irradiance of the environment");
   if (glossy) pass.read(elements_.materials, Access::storageLoad, "Materials", "BRDFs");
   // Some compilers keep what only glossy surfaces would look up.

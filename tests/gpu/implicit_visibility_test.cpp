@@ -10,6 +10,7 @@
 #include "core/reference/reference.h"
 #include "tests/gpu/ball_scene.h"
 #include "tests/gpu/render_test.h"
+#include "tests/support/scene_nodes.h"
 
 namespace limn {
 namespace {
@@ -230,6 +231,33 @@ TEST_F(ImplicitVisibilityTest, ASkyAloneIsSentIntoBins) {
   };
   const Image even = final("0"), sent = final("4");
   EXPECT_NEAR(mean(sent) / mean(even), 1, 0.05);
+}
+
+/// A lamp that reflects half of what it gets gets nothing from itself: the floor below it is as it would be
+/// below a black one.
+TEST_F(ImplicitVisibilityTest, ADoubleSidedLampDoesNotLightItself) {
+  const auto below = [](float reflectance, const char* glossyBins) {
+    scene::Scene scene;
+    test::show(scene, test::quad({0, 0, 0}, {4, 0, 0}, {0, 0, -4},
+                                 test::addMaterial(scene, test::lambertian(0.5f))));
+    scene::Material emissive = test::lambertian(reflectance);
+    emissive.emission = glm::vec3(10);
+    emissive.doubleSided = true;
+    scene::Primitive lamp = test::quad({0, 0, 0}, {1, 0, 0}, {0, 0, -1}, test::addMaterial(scene, emissive));
+    lamp.emissiveParts = {{{.sideU = {1, 0, 0}, .sideV = {0, 0, -1}}}};
+    test::show(scene, lamp,
+               glm::rotate(glm::translate(glm::mat4(1), {0.37f, 1.71f, -0.23f}), 0.4f, {0.6f, 0.3f, 0.8f}));
+    render::Renderer renderer(device(), scene);
+    renderer.configure(
+        settings(48, 36, Term::indirect,
+                 {technique("implicit_visibility",
+                            {{"bins", "8"}, {"longest_edge", "0.1"}, {"glossy_bins", glossyBins}})}));
+    renderer.setCamera(scene::lookAt({0, 1, 0.01f}, {0, 0, 0}, 0.8f));
+    renderer.render();
+    return renderer.read();
+  };
+  for (const char* glossyBins : {"0", "4"})
+    EXPECT_EQ(rmse(below(0.5f, glossyBins), below(0, glossyBins)), 0) << glossyBins;
 }
 
 class ImplicitVisibilityBallTest : public test::BallTest {};

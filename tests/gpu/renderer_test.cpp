@@ -1,12 +1,15 @@
-// What a renderer does between frames: shaders that change on disk, pictures that are too large.
+// What a renderer does between frames, with shaders that change on disk and with pictures that are too large;
+// and of a lamp that is seen.
 #include <unistd.h>
 
+#include <cmath>
 #include <filesystem>
 #include <string>
 
 #include "core/base/error.h"
 #include "core/base/file.h"
 #include "tests/gpu/render_test.h"
+#include "tests/support/scene_nodes.h"
 
 namespace limn {
 namespace {
@@ -41,6 +44,35 @@ TEST_F(RendererTest, picturesThatCannotBeReadBackAreRefusedAtOnce) {
   render::Renderer renderer(device(), scene);
   EXPECT_THROW(renderer.configure(settings(16384, 8192, Term::direct)), UsageError);
   EXPECT_NO_THROW(renderer.configure(settings(16384, 8191, Term::direct)));
+}
+
+/// Depths put pixels of a lamp on either side of it, by rounding. The lamp fills the picture.
+TEST_F(RendererTest, aDoubleSidedLampDoesNotLightItself) {
+  scene::Scene scene;
+  scene::Material emissive = test::lambertian(0.5f);
+  emissive.emission = glm::vec3(10);
+  emissive.doubleSided = true;
+  scene::Primitive lamp = test::quad({0, 0, 0}, {8, 0, 0}, {0, 8, 0}, test::addMaterial(scene, emissive));
+  lamp.emissiveParts = {{{.sideU = {8, 0, 0}, .sideV = {0, 8, 0}}}};
+  const glm::vec3 centre(0.37f, 1.71f, -0.23f);
+  const glm::mat4 place =
+      glm::rotate(glm::translate(glm::mat4(1), centre), 0.7f, glm::vec3(0.6f, 0.3f, 0.8f));
+  test::show(scene, lamp, place);
+  render::Renderer renderer(device(), scene);
+  ASSERT_EQ(renderer.pose().lights.size(), 1u);
+  for (const float side : {1.f, -1.f})
+    for (const float tilt : {0.f, 0.4f, 0.9f}) {
+      const glm::vec3 away(std::sin(tilt), 0, side * std::cos(tilt));
+      const auto seen = [&](Term term) {
+        renderer.configure(settings(48, 36, term));
+        renderer.setCamera(scene::lookAt(centre + glm::mat3(place) * away, centre, 0.6f));
+        renderer.render();
+        return renderer.read();
+      };
+      SCOPED_TRACE(side * tilt);
+      expectWithin(seen(Term::direct), 0, 0);
+      expectWithin(seen(Term::final), 10, 10);
+    }
 }
 
 }  // namespace

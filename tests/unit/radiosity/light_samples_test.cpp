@@ -3,7 +3,10 @@
 
 #include <gtest/gtest.h>
 
+#include <algorithm>
+
 #include "glsl/light/unshadowed_light.glsl"
+#include "tests/support/scene_nodes.h"
 
 namespace limn::radiosity {
 namespace {
@@ -103,6 +106,57 @@ TEST(LightSamplesTest, ASunHasItsIrradianceWhateverItsAngle) {
     EXPECT_NEAR(seen.irradiance.x, 1.6, 1e-4);
     EXPECT_NEAR(total(seen).x, 1.6, 1e-3);
     EXPECT_EQ(lightAt(sun, 1, 10).irradiance, glm::vec3(0));
+  }
+}
+
+TEST(LightSamplesTest, AFlatLightDoesNotLightItself) {
+  glsl::Light light = rectangle(1);
+  light.position = {0, 0, 0};
+  light.flags = glsl::light_flag_geometry | glsl::light_flag_two_sided;
+  light.own_instance = 3;
+  const auto irradiance = [&](uint32_t instance) {
+    LightAtPlace sum;
+    addLight(light, {.position = {0, 0, 1e-3f}, .normal = {0, 0, -1}, .instance = instance}, Curtain(-100),
+             16, sum);
+    EXPECT_EQ(sum.incident.empty(), sum.irradiance == glm::vec3(0));
+    return sum.irradiance;
+  };
+  EXPECT_EQ(irradiance(3), glm::vec3(0));
+  EXPECT_GT(irradiance(2).x, 1);
+  EXPECT_GT(irradiance(glsl::no_instance).x, 1);
+}
+
+/// Elements of a lamp lie on either side of it by rounding. What its light brings back to it comes off the
+/// floor, which gets nothing that the lamp reflects.
+TEST(LightSamplesTest, ElementsOfALampAreNotLitByIt) {
+  for (const float tilt : {0.f, 0.3f, 1.1f}) {
+    scene::Scene scene;
+    test::show(scene, test::quad({0, -2, 0}, {8, 0, 0}, {0, 0, -8},
+                                 test::addMaterial(scene, test::lambertian(0.5f))));
+    scene::Material emissive = test::lambertian(0.5f);
+    emissive.emission = glm::vec3(10);
+    emissive.doubleSided = true;
+    scene::Primitive lamp = test::quad({0, 0, 0}, {1, 0, 0}, {0, 0, -1}, test::addMaterial(scene, emissive));
+    lamp.emissiveParts = {{{.sideU = {1, 0, 0}, .sideV = {0, 0, -1}}}};
+    test::show(scene, lamp,
+               glm::rotate(glm::translate(glm::mat4(1), {0.37f, 1.71f, -0.23f}), tilt, {0.6f, 0.3f, 0.8f}));
+    const scene::Pose pose = scene::evaluate(scene, 0);
+    ASSERT_EQ(pose.lights.size(), 1u);
+    ASSERT_EQ(pose.lights[0].own_instance, 1u);
+    const SceneElements elements(scene, pose, 0.05f, 1u << 20);
+    SampleSolver solver(elements.surfels(), elements.forest(), elements.space(), elements.materials(), {});
+    solver.begin();
+    lightLeaves(elements, pose.lights, Curtain(-100), 16, solver);
+    solver.reflect();
+    solver.shoot(Curtain(-100));
+    float floor = 0, own = 0;
+    for (size_t i = 0; i < elements.surfels().size(); ++i) {
+      const float irradiance = solver.irradiance()[elements.forest().leafOf()[i]].x;
+      float& most = elements.surfels().objects[i] == 1 ? own : floor;
+      most = std::max(most, irradiance);
+    }
+    EXPECT_EQ(floor, 0) << tilt;
+    EXPECT_GT(own, 0.01f) << tilt;
   }
 }
 
