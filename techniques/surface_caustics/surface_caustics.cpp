@@ -29,7 +29,8 @@ constexpr auto kParameters = caustics::rayParameters(std::to_array<Parameter>({
 constexpr const char* kScene = "glass_sphere";
 constexpr StressCase kStress[] = {
     {.name = "buffer of 1 texel", .scene = kScene, .settings = "buffer_size=1", .factor = 0},
-    {.name = "buffer of 16 texels", .scene = kScene, .settings = "buffer_size=16", .factor = 6},
+    {.name = "buffer of 16 texels", .scene = kScene, .settings = "buffer_size=16", .factor = 0},
+    {.name = "buffer of 64 texels", .scene = kScene, .settings = "buffer_size=64", .factor = 6},
     {.name = "wide kernels", .scene = kScene, .settings = "kernel=8", .factor = 6},
     {.name = "photons of a pixel", .scene = kScene, .settings = "beam_cosine=1", .factor = 20},
     {.name = "kernels across edges", .scene = "gem", .settings = "beam_cosine=-1", .factor = 6},
@@ -45,6 +46,10 @@ constexpr StressCase kStress[] = {
     {.name = "caustic map of 16 texels",
      .scene = kScene,
      .settings = "splat=light scene_map_size=16",
+     .factor = 0},
+    {.name = "caustic map of 64 texels",
+     .scene = kScene,
+     .settings = "splat=light scene_map_size=64",
      .factor = 20},
 };
 

@@ -44,8 +44,8 @@ class NoAnswer : public Technique {
 
 class StressTest : public RenderTest {
  protected:
-  bench::StressRun stressRun() {
-    return bench::StressRun(device(), registry(), asset, {.width = 48, .height = 36, .spp = 4});
+  bench::StressRun stressRun(int spp = 4) {
+    return bench::StressRun(device(), registry(), asset, {.width = 48, .height = 36, .spp = spp});
   }
 };
 
@@ -79,7 +79,7 @@ TEST_F(StressTest, DeclaredCasesEndInAPictureThatErrsNoMoreThanTheyAllow) {
 /// Caustics are a small part of some pictures, and lost in the reference's noise in others, so that a case
 /// may pass without them. The error that both are compared with is the technique's own: it is kept by name.
 TEST_F(StressTest, ACaseFindsThatCausticsAreMissing) {
-  bench::StressRun run = stressRun();
+  bench::StressRun run = stressRun(64);
   for (const TechniquePlugin* plugin : testedTechniques()) {
     const std::string_view name = plugin->info->name;
     if (!name.ends_with("_caustics")) continue;
@@ -101,7 +101,7 @@ TEST_F(StressTest, ACaseFindsThatCausticsAreMissing) {
 
 /// The reference of caustic lines holds airlight as well.
 TEST_F(StressTest, ATechniqueBesideAddsItsLight) {
-  bench::StressRun run = stressRun();
+  bench::StressRun run = stressRun(64);
   const TechniquePlugin& lines = registry().find("volume_caustics");
   const bench::StressAnswer alone = run.run(lines, {.name = "alone", .scene = "glass_sphere"}, true).worst();
   const StressResult both =
