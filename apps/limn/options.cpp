@@ -30,16 +30,6 @@ static_assert(std::atomic<int>::is_always_lock_free, "a signal handler reads it"
 
 }  // namespace
 
-CLI::Validator realRange(double low, double high) {
-  const auto problem = [low, high](const std::string& text) {
-    const std::optional<double> value = parseNumber(text);
-    return value && *value >= low && *value <= high
-               ? std::string()
-               : fmt::format("Value {} not in range {} to {}", text, low, high);
-  };
-  return {problem, fmt::format("FLOAT in [{:g} - {:g}]", low, high)};
-}
-
 fs::path programBeside(const std::string& name) {
   std::error_code unknown;
   return fs::read_symlink("/proc/self/exe", unknown).parent_path() / name;

@@ -6,6 +6,7 @@
 
 #include "apps/limn/options.h"
 #include "core/base/error.h"
+#include "core/base/text.h"
 #include "core/question/question_fields.h"
 
 namespace limn::app {
@@ -41,6 +42,16 @@ CLI::Validator oneOf(const QuestionField& field) {
 }
 
 }  // namespace
+
+CLI::Validator realRange(double low, double high) {
+  const auto problem = [low, high](const std::string& text) {
+    const std::optional<double> value = parseNumber(text);
+    return value && *value >= low && *value <= high
+               ? std::string()
+               : fmt::format("Value {} not in range {} to {}", text, low, high);
+  };
+  return {problem, fmt::format("FLOAT in [{:g} - {:g}]", low, high)};
+}
 
 CLI::Option* addSceneFlag(CLI::App& command, SceneQuestion& question, std::string_view key,
                           const std::string& chosenFlag) {
