@@ -3,7 +3,7 @@
 #include <algorithm>
 #include <cmath>
 
-#include "glsl/numeric/srgb.glsl"
+#include "core/image/byte_values.h"
 
 namespace limn::app {
 
@@ -20,14 +20,13 @@ std::shared_ptr<const Image8> readBack(const gpu::Texture& texture) {
 }
 
 Image fromBottomFirst(glm::ivec2 size, std::span<const uint8_t> pixels) {
+  const auto& colour = byteValues(true);
   Image image = Image::rgb(size.x, size.y);
   for (int y = 0; y < size.y; ++y) {
     for (int x = 0; x < size.x; ++x) {
       const auto at =
           3 * (static_cast<size_t>(size.y - 1 - y) * static_cast<size_t>(size.x) + static_cast<size_t>(x));
-      for (int c = 0; c < 3; ++c)
-        image.at(x, y, c) =
-            glsl::srgb_decode(static_cast<float>(pixels[at + static_cast<size_t>(c)]) / 255.f);
+      for (int c = 0; c < 3; ++c) image.at(x, y, c) = colour[pixels[at + static_cast<size_t>(c)]];
     }
   }
   return image;

@@ -12,7 +12,9 @@
 #include "core/gpu_scene/gpu_scene_data.h"
 #include "core/gpu_scene/light_textures.h"
 #include "core/scene/camera.h"
+#include "core/scene/draw_instance.h"
 #include "core/scene/medium.h"
+#include "core/scene/normal_matrix.h"
 
 namespace limn::scene {
 namespace {
@@ -103,18 +105,16 @@ void GpuScene::Implementation::updateInstances(const Pose& pose) {
     const DrawInstance& drawn = pose.instances[i];
     InstanceState& state = states[i];
     Bounds local;
+    state.material = materialIndexOf(scene, drawn);
     if (drawn.node == kNone) {
       const DynamicState& d = dynamic[static_cast<size_t>(drawn.mesh)];
       state.range = d.range;
       state.primitive = geometry.primitiveCount() + static_cast<uint32_t>(drawn.mesh);
-      state.material = scene.dynamic[static_cast<size_t>(drawn.mesh)].material;
       local = pose.dynamic[static_cast<size_t>(drawn.mesh)].bounds;
     } else {
-      const Primitive& primitive =
-          scene.meshes[static_cast<size_t>(drawn.mesh)].primitives[static_cast<size_t>(drawn.primitive)];
+      const Primitive& primitive = primitiveOf(scene, pose, drawn);
       state.range = geometry.primitive(drawn.mesh, drawn.primitive);
       state.primitive = geometry.primitiveIndex(drawn.mesh, drawn.primitive);
-      state.material = primitive.material;
       local = primitive.bounds;
       if (drawn.deformed != kNone) {
         const auto d = static_cast<size_t>(drawn.deformed);
@@ -124,8 +124,7 @@ void GpuScene::Implementation::updateInstances(const Pose& pose) {
       }
     }
     const glm::mat3 linear(drawn.objectToWorld);
-    const bool mirrors = glm::determinant(linear) < 0;
-    state.mirrored = mirrors != drawn.mirroredSkin;
+    state.mirrored = mirrored(drawn);
     state.bounds = transformed(local, drawn.objectToWorld);
     bounds.add(state.bounds);
 
@@ -135,7 +134,7 @@ void GpuScene::Implementation::updateInstances(const Pose& pose) {
     const float scale =
         std::max({glm::length(linear[0]), glm::length(linear[1]), glm::length(linear[2]), 1e-30f});
     const glm::mat3 m = linear / scale;
-    const float side = mirrors ? -1.f : 1.f;
+    const float side = mirrors(drawn.objectToWorld) ? -1.f : 1.f;
     out.normal_to_world = glm::mat4(glm::mat3(side * glm::cross(m[1], m[2]), side * glm::cross(m[2], m[0]),
                                               side * glm::cross(m[0], m[1])));
     out.material = static_cast<uint32_t>(state.material);
@@ -286,6 +285,12 @@ const Bounds& GpuScene::bounds(uint32_t instance) const {
 const Bounds& GpuScene::bounds() const {
   return implementation_->bounds;
 }
+Bounds GpuScene::specularBounds() const {
+  Bounds objects;
+  for (uint32_t i = 0; i < instanceCount(); ++i)
+    if (specular(i)) objects.add(bounds(i));
+  return objects;
+}
 uint32_t GpuScene::instanceCount() const {
   return static_cast<uint32_t>(implementation_->states.size());
 }
@@ -325,8 +330,10 @@ bool GpuScene::hasHeights() const {
 }
 
 bool GpuScene::hasTranslucent() const {
-  return std::ranges::any_of(implementation_->scene.materials,
-                             [](const Material& material) { return material.subsurface.has_value(); });
+  const Implementation& s = *implementation_;
+  return std::ranges::any_of(s.states, [&](const InstanceState& state) {
+    return s.scene.materials[static_cast<size_t>(state.material)].subsurface.has_value();
+  });
 }
 
 std::vector<SurfaceVariant> GpuScene::surfaceVariants() const {

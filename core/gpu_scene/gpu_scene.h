@@ -112,15 +112,17 @@ class LIMN_API GpuScene {
   const Bounds& bounds(uint32_t instance) const;
   /// Returns the union of the bounds of all instances.
   const Bounds& bounds() const;
+  /// Returns the union of the bounds of the specular instances.
+  Bounds specularBounds() const;
   uint32_t instanceCount() const;
   uint64_t triangles() const;  ///< summed over all instances
   /// Says whether the instance's material is specular.
   bool specular(uint32_t instance) const;
   bool hasSpecular() const;     ///< at least one instance is specular
-  bool hasMasked() const;       ///< at least one material has an alpha cutoff
+  bool hasMasked() const;       ///< at least one instance has an alpha cutoff
   bool hasColours() const;      ///< at least one primitive has vertex colours
   bool hasHeights() const;      ///< at least one material has a height map
-  bool hasTranslucent() const;  ///< at least one material is translucent
+  bool hasTranslucent() const;  ///< at least one instance is translucent
   /// Returns the variants of all materials of the scene, each once.
   std::vector<SurfaceVariant> surfaceVariants() const;
 

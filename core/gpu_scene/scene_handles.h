@@ -46,12 +46,13 @@ inline constexpr GBufferNames kGBufferNames;
 LIMN_API void readSurfaces(frame::PassBuilder& pass, const GBuffer& gbuffer);
 
 /// Holds scene data as graph resources. The version of each handle changes when its contents change, so the
-/// results of a cacheable pass that reads `geometry` and `lights` (and not `frame`) stay valid while the
-/// camera moves.
+/// results of a cacheable pass that reads `geometry`, `instances` and `lights` (and not `frame`) stay valid
+/// while the camera moves. Whatever depends on where surfaces are reads both `geometry` and `instances`: an
+/// instance that moves as a whole changes the latter alone.
 struct SceneHandles {
   frame::BufferHandle frame;           ///< uniform block FrameBlock
-  frame::BufferHandle geometry;        ///< stands for all vertex, index and instance data after deformation
-  frame::BufferHandle instances;       ///< storage buffer of glsl::Instance
+  frame::BufferHandle geometry;        ///< stands for all vertex and index data after deformation
+  frame::BufferHandle instances;       ///< storage buffer of glsl::Instance: matrices and materials
   frame::BufferHandle materials;       ///< storage buffer of glsl::Material
   frame::BufferHandle lights;          ///< storage buffer of glsl::Light, index = light index
   frame::TextureHandle lightTextures;  ///< RGBA32F array of textures in front of spot lights; empty: none

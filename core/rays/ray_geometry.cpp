@@ -8,6 +8,7 @@
 #include <cstring>
 
 #include "core/base/error.h"
+#include "core/scene/draw_instance.h"
 
 namespace limn::rays {
 
@@ -18,21 +19,6 @@ namespace {
 /// Triangles that a primitive whose topology changes has room for at least.
 constexpr uint32_t kLeastCapacity = 64;
 constexpr int64_t kTriangleBytes = 3 * sizeof(glm::vec4);
-
-const scene::Primitive& primitiveOf(const scene::Scene& scene, const scene::Pose& pose,
-                                    const scene::DrawInstance& instance) {
-  const auto mesh = static_cast<size_t>(instance.mesh);
-  if (instance.node == scene::kNone) return *pose.dynamic[mesh].primitive;
-  return scene.meshes[mesh].primitives[static_cast<size_t>(instance.primitive)];
-}
-
-const scene::Material& materialOf(const scene::Scene& scene, const scene::Pose& pose,
-                                  const scene::DrawInstance& instance) {
-  const int material = instance.node == scene::kNone
-                           ? scene.dynamic[static_cast<size_t>(instance.mesh)].material
-                           : primitiveOf(scene, pose, instance).material;
-  return scene.materials[static_cast<size_t>(material)];
-}
 
 uint32_t triangleCount(const scene::Primitive& primitive) {
   return static_cast<uint32_t>(primitive.indices.size() / 3);
@@ -134,7 +120,7 @@ void RayGeometryService::checkSize(const scene::Pose& pose) const {
   std::map<Source, int64_t> triangles;
   for (const scene::DrawInstance& instance : pose.instances) {
     const Source source = sourceOf(instance);
-    const uint32_t count = triangleCount(primitiveOf(scene_, pose, instance));
+    const uint32_t count = triangleCount(scene::primitiveOf(scene_, pose, instance));
     triangles[source] = source.dynamic ? capacityFor(count) : count;
   }
   int64_t sum = 0;
@@ -240,7 +226,7 @@ void RayGeometryService::appendTree(std::vector<glsl::RayNode>& nodes, std::vect
 RayGeometryService::Mesh RayGeometryService::addMesh(Parts& parts, const scene::Pose& pose, uint32_t draw) {
   const scene::DrawInstance& instance = pose.instances[draw];
   const Source& source = sources_[draw];
-  const scene::Primitive& primitive = primitiveOf(scene_, pose, instance);
+  const scene::Primitive& primitive = scene::primitiveOf(scene_, pose, instance);
   Mesh mesh;
   mesh.root = static_cast<uint32_t>(parts.nodes.size());
   mesh.firstTriangle = static_cast<uint32_t>(parts.triangles.size() / 3);
@@ -248,7 +234,7 @@ RayGeometryService::Mesh RayGeometryService::addMesh(Parts& parts, const scene::
   mesh.capacity = source.dynamic ? capacityFor(mesh.triangles) : mesh.triangles;
   if (source.dynamic) {
     // It has no texture coordinates: its mask is open everywhere or nowhere.
-    const scene::Material& material = materialOf(scene_, pose, instance);
+    const scene::Material& material = scene::materialOf(scene_, instance);
     mesh.transparent = material.baseColour.a < material.alphaCutoff;
     mesh.built = pose.dynamic[static_cast<size_t>(instance.mesh)].primitive;
   }
@@ -264,7 +250,7 @@ RayGeometryService::Mesh RayGeometryService::addMesh(Parts& parts, const scene::
     appendTree(parts.nodes, parts.triangles, primitive, positions, mesh.root, mesh.firstTriangle);
     meshStack_ = std::max(meshStack_, builder_.stack());
     if (!source.dynamic)
-      mesh.coverage = parts.coverage.add(primitive, materialOf(scene_, pose, instance), builder_.order());
+      mesh.coverage = parts.coverage.add(primitive, scene::materialOf(scene_, instance), builder_.order());
     if (moves) addMotion(parts, primitive, draw, mesh.root);
   }
   if (source.dynamic) {

@@ -46,8 +46,7 @@ PointView::PointView(const glsl::Light& light, const Surface& receiver) {
 
 RectangleView::RectangleView(const glsl::Light& light, const Surface& receiver)
     : light_(light), receiver_(receiver.position), normal_(receiver.values.geometric_normal) {
-  // A flat light does not see itself; rounding must not decide on which side of itself it lies.
-  if (light.own_instance != glsl::no_instance && light.own_instance == receiver.draw) return;
+  if (glsl::light_is_instance(light, receiver.draw)) return;
   part_ = glsl::rectangle_visible_part(light, receiver_, normal_);
   if (part_.count == 0) return;
   rectangle_ = glsl::rectangle_from(light, receiver_);

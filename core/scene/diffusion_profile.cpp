@@ -1,11 +1,14 @@
 #include "core/scene/diffusion_profile.h"
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 
+#include "core/image/byte_values.h"
+#include "core/scene/draw_instance.h"
+#include "core/scene/subsurface.h"
 #include "glsl/diffusion/dipole.glsl"
 #include "glsl/diffusion/normalised.glsl"
-#include "glsl/numeric/srgb.glsl"
 
 namespace limn::scene {
 namespace {
@@ -18,34 +21,37 @@ bool scatterAlike(const Material& a, const Material& b) {
          (!s.albedoFromBaseColour || a.baseColourTexture.image == b.baseColourTexture.image);
 }
 
-/// Returns the mean albedo of a material whose base colour is its albedo, without vertex colours.
-glm::vec3 meanAlbedo(const Scene& scene, const Material& material) {
-  glm::vec3 albedo = glm::clamp(glm::vec3(material.baseColour), 0.f, 1.f);
-  if (material.baseColourTexture.image == kNone) return albedo;
-  const TextureImage& image = scene.images[static_cast<size_t>(material.baseColourTexture.image)];
-  const std::vector<uint8_t>& texel = image.levels.back().rgba;  // one, the mean of all
-  for (int c = 0; c < 3; ++c) {
-    const float stored = static_cast<float>(texel[static_cast<size_t>(c)]) / 255;
-    albedo[c] *= image.srgb ? glsl::srgb_decode(stored) : stored;
-  }
-  return albedo;
-}
-
 TranslucentKind kindOf(const Scene& scene, const Material& material) {
   const Subsurface& s = *material.subsurface;
   TranslucentKind kind{.extinction = s.extinction,
                        .absorption = s.absorption,
-                       .ior = std::clamp(material.ior, 1.f, 3.f),
+                       .ior = subsurfaceIor(material.ior),
                        .textured = s.albedoFromBaseColour};
   if (kind.textured) {
-    kind.albedo = meanAlbedo(scene, material);
-    kind.absorption =
-        glsl::walk_absorption(glsl::walk_reflectance(glsl::diffusion_boundary(kind.ior)), kind.albedo);
+    kind.albedo = baseAlbedo(scene, material, OfTexels::mean);
+    kind.absorption = subsurfaceAbsorption(kind.albedo, kind.ior);
   }
   return kind;
 }
 
 }  // namespace
+
+glm::vec3 baseAlbedo(const Scene& scene, const Material& material, OfTexels which) {
+  glm::vec3 albedo(material.baseColour);
+  const int index = material.baseColourTexture.image;
+  if (index != kNone && !scene.images[static_cast<size_t>(index)].levels.empty()) {
+    const TextureImage& image = scene.images[static_cast<size_t>(index)];
+    // The last level is a single texel, the mean of all.
+    const std::vector<uint8_t>& texels =
+        (which == OfTexels::mean ? image.levels.back() : image.levels.front()).rgba;
+    std::array<uint8_t, 3> most{};
+    for (size_t i = 0; i + 3 < texels.size(); i += 4)
+      for (size_t c = 0; c < 3; ++c) most[c] = std::max(most[c], texels[i + c]);
+    const auto& values = byteValues(image.srgb);
+    albedo *= glm::vec3(values[most[0]], values[most[1]], values[most[2]]);
+  }
+  return glm::clamp(albedo, 0.f, 1.f);
+}
 
 Profile diffusionProfile(const glm::vec3& extinction, const glm::vec3& absorption, float ior,
                          bool normalised) {
@@ -83,12 +89,16 @@ double leastDistance(const std::function<bool(double)>& holds) {
   return std::exp(high);
 }
 
-TranslucentKinds translucentKinds(const Scene& scene) {
+TranslucentKinds translucentKinds(const Scene& scene, const Pose& pose) {
+  std::vector<bool> drawn(scene.materials.size());
+  for (const DrawInstance& instance : pose.instances)
+    drawn[static_cast<size_t>(materialIndexOf(scene, instance))] = true;
   TranslucentKinds result;
   std::vector<const Material*> kept;  // of each kind
-  for (const Material& material : scene.materials) {
+  for (size_t i = 0; i < scene.materials.size(); ++i) {
+    const Material& material = scene.materials[i];
     uint32_t& kind = result.ofMaterials.emplace_back(~0u);
-    if (!material.subsurface) continue;
+    if (!drawn[i] || !material.subsurface) continue;
     const auto same =
         std::ranges::find_if(kept, [&](const Material* other) { return scatterAlike(material, *other); });
     kind = static_cast<uint32_t>(same - kept.begin());

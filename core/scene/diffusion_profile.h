@@ -28,6 +28,16 @@ LIMN_API Profile diffusionProfile(const glm::vec3& extinction, const glm::vec3& 
 /// to 1e6.
 LIMN_API double leastDistance(const std::function<bool(double)>& holds);
 
+/// Says which texels stand for a texture.
+enum class OfTexels {
+  mean,     ///< the mean of all
+  largest,  ///< in each channel the largest
+};
+
+/// Returns the albedo of a material whose base colour is its albedo: the factor times the texture's. Vertex
+/// colours only make it smaller.
+LIMN_API glm::vec3 baseAlbedo(const Scene& scene, const Material& material, OfTexels which);
+
 /// Holds what translucent materials that scatter alike have in common.
 struct TranslucentKind {
   glm::vec3 extinction{0};  ///< sigma_t', per metre
@@ -37,15 +47,15 @@ struct TranslucentKind {
   bool textured = false;    ///< the albedo is the base colour of each pixel
 };
 
-/// Holds the translucent materials of a scene, those that scatter alike once.
+/// Holds the translucent materials that a scene draws, those that scatter alike once.
 struct TranslucentKinds {
   std::vector<TranslucentKind> kinds;
-  std::vector<uint32_t>
-      ofMaterials;        ///< for each material of the scene an index into `kinds`; ~0: it is opaque
-  bool textured = false;  ///< the albedo of at least one kind is
+  std::vector<uint32_t> ofMaterials;  ///< for each material of the scene an index into `kinds`; ~0: it is
+                                      ///< opaque, or nothing is drawn with it
+  bool textured = false;              ///< the albedo of at least one kind is
 };
 
-/// Returns the kinds of the scene's translucent materials, none where all are opaque.
-LIMN_API TranslucentKinds translucentKinds(const Scene& scene);
+/// Returns the kinds of the translucent materials of a pose's instances, none where all are opaque.
+LIMN_API TranslucentKinds translucentKinds(const Scene& scene, const Pose& pose);
 
 }  // namespace limn::scene

@@ -6,6 +6,7 @@
 #include <cmath>
 
 #include "core/base/error.h"
+#include "core/scene/normal_matrix.h"
 #include "core/scene/private/animate.h"
 #include "core/scene/private/world_light.h"
 #include "core/scene/scene.h"
@@ -188,7 +189,7 @@ void addInstances(const Scene& scene, const Animation* animation, double time, P
         const bool skinned =
             instance.deformed != kNone && !pose.deformed[at(instance.deformed)].joints.empty();
         instance.objectToWorld = skinned ? glm::mat4(1) : world;
-        instance.mirroredSkin = skinned && glm::determinant(glm::dmat3(world)) < 0;
+        instance.mirroredSkin = skinned && mirrors(world);
         pose.instances.push_back(instance);
       }
     }

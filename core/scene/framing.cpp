@@ -7,6 +7,7 @@
 #include <vector>
 
 #include "core/scene/camera.h"
+#include "core/scene/draw_instance.h"
 
 namespace limn::scene {
 namespace {
@@ -18,12 +19,6 @@ constexpr std::size_t kMostVertices = std::size_t{4} << 20;  // of them; of more
 
 glm::dmat3 viewRotation(const glm::vec3& back) {
   return glm::dmat3(glm::mat3(lookAt(back, glm::vec3(0), 1.f).worldToView));
-}
-
-const Primitive& primitiveOf(const Scene& scene, const Pose& pose, const DrawInstance& instance) {
-  const auto mesh = static_cast<std::size_t>(instance.mesh);
-  return instance.node == kNone ? *pose.dynamic[mesh].primitive
-                                : scene.meshes[mesh].primitives[static_cast<std::size_t>(instance.primitive)];
 }
 
 /// Calls visit() with vertices in the world: all, or an even part of very many.

@@ -3,8 +3,8 @@
 #include <algorithm>
 #include <cmath>
 
+#include "core/image/byte_values.h"
 #include "core/scene/bilinear.h"
-#include "glsl/numeric/srgb.glsl"
 
 namespace limn::scene {
 
@@ -14,11 +14,11 @@ LightTexture makeLightTexture(const TextureImage& image) {
   // Points per texel and axis: as many as there are texels of the image, so that each counts.
   const int across = std::max(1, (level.width + side - 1) / side),
             down = std::max(1, (level.height + side - 1) / side);
+  const auto& colour = byteValues(image.srgb);
   const auto texel = [&](int x, int y) {
     const uint8_t* rgba = level.rgba.data() + 4 * (static_cast<size_t>(y) * static_cast<size_t>(level.width) +
                                                    static_cast<size_t>(x));
-    const glm::vec3 encoded = glm::vec3(rgba[0], rgba[1], rgba[2]) / 255.f;
-    return image.srgb ? glsl::srgb_decode(encoded) : encoded;
+    return glm::vec3(colour[rgba[0]], colour[rgba[1]], colour[rgba[2]]);
   };
   LightTexture texture;
   texture.texels.resize(size_t{side} * side);

@@ -4,6 +4,7 @@
 #include <array>
 #include <cmath>
 
+#include "core/image/byte_values.h"
 #include "glsl/numeric/srgb.glsl"
 
 namespace limn::scene {
@@ -31,17 +32,6 @@ std::vector<Footprint> footprints(int from, int to) {
   return out;
 }
 
-using LinearTable = std::array<float, 256>;
-
-LinearTable decodeTable(bool srgb) {
-  LinearTable table;
-  for (int i = 0; i < 256; ++i) {
-    const float value = static_cast<float>(i) / 255.f;
-    table[static_cast<std::size_t>(i)] = srgb ? glsl::srgb_decode(value) : value;
-  }
-  return table;
-}
-
 /// Linear value to the nearest byte, as sRGB by a search among the decoded steps' midpoints.
 class Encoder {
  public:
@@ -60,7 +50,8 @@ class Encoder {
   std::array<float, 255> midpoint_{};
 };
 
-TextureImage::Level halve(const TextureImage::Level& from, const LinearTable& table, const Encoder& encode) {
+TextureImage::Level halve(const TextureImage::Level& from, bool srgb, const Encoder& encode) {
+  const auto &colour = byteValues(srgb), &alpha = byteValues(false);
   TextureImage::Level to;
   to.width = std::max(1, from.width / 2);
   to.height = std::max(1, from.height / 2);
@@ -77,8 +68,7 @@ TextureImage::Level halve(const TextureImage::Level& from, const LinearTable& ta
           const std::uint8_t* texel = &from.rgba[(line + static_cast<std::size_t>(column.first + c)) * 4];
           const float weight =
               row.weight[static_cast<std::size_t>(r)] * column.weight[static_cast<std::size_t>(c)];
-          sum += weight * glm::vec4(table[texel[0]], table[texel[1]], table[texel[2]],
-                                    static_cast<float>(texel[3]) / 255.f);
+          sum += weight * glm::vec4(colour[texel[0]], colour[texel[1]], colour[texel[2]], alpha[texel[3]]);
         }
       }
       for (int channel = 0; channel < 3; ++channel) *out++ = encode(sum[channel]);
@@ -91,10 +81,9 @@ TextureImage::Level halve(const TextureImage::Level& from, const LinearTable& ta
 }  // namespace
 
 void buildMipChain(TextureImage& texture) {
-  const LinearTable table = decodeTable(texture.srgb);
   const Encoder encode(texture.srgb);
   while (texture.levels.back().width > 1 || texture.levels.back().height > 1)
-    texture.levels.push_back(halve(texture.levels.back(), table, encode));
+    texture.levels.push_back(halve(texture.levels.back(), texture.srgb, encode));
 }
 
 }  // namespace limn::scene

@@ -1,14 +1,12 @@
 #include "core/scene/subsurface.h"
 
-#include <algorithm>
-
 #include "glsl/diffusion/normalised.glsl"
 
 namespace limn::scene {
 namespace {
 
 glsl::WalkReflectance walkOf(float ior) {
-  return glsl::walk_reflectance(glsl::diffusion_boundary(std::clamp(ior, 1.f, 3.f)));
+  return glsl::walk_reflectance(glsl::diffusion_boundary(subsurfaceIor(ior)));
 }
 
 }  // namespace

@@ -1,38 +1,19 @@
 #include "core/scene/texture_lookup.h"
 
 #include <algorithm>
-#include <array>
 #include <cmath>
 
+#include "core/image/byte_values.h"
 #include "core/scene/bilinear.h"
-#include "glsl/numeric/srgb.glsl"
 
 namespace limn::scene {
 namespace {
-
-struct ByteTable {
-  std::array<float, 256> srgb, linear;
-  ByteTable() {
-    for (int i = 0; i < 256; ++i) {
-      linear[i] = static_cast<float>(i) / 255.f;
-      srgb[i] = glsl::srgb_decode(linear[i]);
-    }
-  }
-};
 
 /// uv brought near 0, so that texel coordinates fit an int and keep their precision.
 float reduce(float u, Wrap wrap) {
   if (!std::isfinite(u)) return 0.f;
   if (wrap == Wrap::clamp) return std::clamp(u, -1.f, 2.f);
   return wrap == Wrap::mirror ? u - 2.f * std::floor(0.5f * u) : u - std::floor(u);
-}
-
-glm::vec4 texel(const TextureImage::Level& level, bool srgb, int x, int y) {
-  static const ByteTable table;
-  const size_t at = 4 * (static_cast<size_t>(y) * static_cast<size_t>(level.width) + static_cast<size_t>(x));
-  const uint8_t* p = level.rgba.data() + at;
-  const auto& colour = srgb ? table.srgb : table.linear;
-  return {colour[p[0]], colour[p[1]], colour[p[2]], table.linear[p[3]]};
 }
 
 /// The values `at(level)` of the two levels next to `lod`, mixed.
@@ -52,10 +33,16 @@ glm::vec4 sampleTexture(const Scene& scene, const TextureRef& texture, glm::vec2
   const TextureImage& image = scene.images[static_cast<size_t>(texture.image)];
   if (image.levels.empty()) return glm::vec4(1);
   uv = {reduce(uv.x, texture.wrapS), reduce(uv.y, texture.wrapT)};
+  const auto &colour = byteValues(image.srgb), &alpha = byteValues(false);
   return betweenLevels(image.levels.size(), lod, [&](std::size_t index) {
     const TextureImage::Level& level = image.levels[index];
-    return bilinear({level.width, level.height}, texture.wrapS, texture.wrapT, uv,
-                    [&](int x, int y) { return texel(level, image.srgb, x, y); });
+    const auto texel = [&](int x, int y) {
+      const size_t at =
+          4 * (static_cast<size_t>(y) * static_cast<size_t>(level.width) + static_cast<size_t>(x));
+      const uint8_t* p = level.rgba.data() + at;
+      return glm::vec4(colour[p[0]], colour[p[1]], colour[p[2]], alpha[p[3]]);
+    };
+    return bilinear({level.width, level.height}, texture.wrapS, texture.wrapT, uv, texel);
   });
 }
 

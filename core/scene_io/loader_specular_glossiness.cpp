@@ -6,8 +6,8 @@
 #include <algorithm>
 #include <cmath>
 
+#include "core/image/byte_values.h"
 #include "core/scene_io/private/loader.h"
-#include "glsl/numeric/srgb.glsl"
 
 namespace limn::scene {
 
@@ -16,12 +16,13 @@ int Loader::readGlossiness(int index, bool another, float glossiness, glm::vec3&
   std::optional<Image8> image = decodeImage(index, another, what);
   if (!image) return kNone;
   const glm::u8vec3 first(image->data[0], image->data[1], image->data[2]);
+  const auto& colour = byteValues(true);
   glm::dvec3 sum(0);
   bool varies = false;
   for (std::size_t i = 0; i < image->data.size(); i += 4) {
     std::uint8_t* texel = &image->data[i];
     for (int c = 0; c < 3; ++c) {
-      sum[c] += static_cast<double>(glsl::srgb_decode(static_cast<float>(texel[c]) / 255.f));
+      sum[c] += static_cast<double>(colour[texel[c]]);
       varies = varies || texel[c] != first[c];
     }
     // Roughness stands in the green channel of metallic-roughness, metalness, whose factor is 0, in the blue

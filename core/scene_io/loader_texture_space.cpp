@@ -4,6 +4,7 @@
 #include <array>
 #include <cmath>
 
+#include "core/image/byte_values.h"
 #include "core/scene/mip_chain.h"
 #include "core/scene_io/private/loader.h"
 #include "glsl/numeric/srgb.glsl"
@@ -81,11 +82,7 @@ TextureImage resampled(const TextureImage& from, const UvMap& map, const glm::iv
       tapsOf(level.width, map.turned ? size.y : size.x, map.repeats.x, map.shift.x);
   const std::vector<Tap> rows =
       tapsOf(level.height, map.turned ? size.x : size.y, map.repeats.y, map.shift.y);
-  std::array<float, 256> colour{};
-  for (std::size_t i = 0; i < colour.size(); ++i) {
-    const float value = static_cast<float>(i) / 255.f;
-    colour[i] = from.srgb ? glsl::srgb_decode(value) : value;
-  }
+  const auto &colour = byteValues(from.srgb), &alpha = byteValues(false);
   TextureImage image;
   image.name = from.name;
   image.srgb = from.srgb;
@@ -107,13 +104,12 @@ TextureImage resampled(const TextureImage& from, const UvMap& map, const glm::iv
         continue;
       }
       for (std::size_t c = 0; c < 4; ++c) {
-        const bool decoded = c < 3 && from.srgb;
-        const auto value = [&](std::size_t k) {
-          return decoded ? colour[corners[k][c]] : static_cast<float>(corners[k][c]) / 255.f;
-        };
+        const auto& values = c < 3 ? colour : alpha;
+        const auto value = [&](std::size_t k) { return values[corners[k][c]]; };
         const float mixed =
             glm::mix(glm::mix(value(0), value(1), s.share), glm::mix(value(2), value(3), s.share), t.share);
-        out[c] = static_cast<std::uint8_t>(std::lround(255.f * (decoded ? glsl::srgb_encode(mixed) : mixed)));
+        const bool encoded = c < 3 && from.srgb;
+        out[c] = static_cast<std::uint8_t>(std::lround(255.f * (encoded ? glsl::srgb_encode(mixed) : mixed)));
       }
     }
   }

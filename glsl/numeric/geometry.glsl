@@ -67,6 +67,9 @@ LIMN_FN vec3 from_local(Frame f, vec3 v) {
   return v.x * f.t + v.y * f.b + v.z * f.n;
 }
 
+// The direction v mirrored at the unit vector n: both point away from the surface.
+LIMN_FN vec3 mirror_direction(vec3 n, vec3 v) { return 2.0f * dot(n, v) * n - v; }
+
 // Unit square to the unit disc, area-preserving and continuous (Shirley and Chiu 1997).
 LIMN_FN vec2 sample_disc(vec2 u) {
   vec2 p = 2.0f * u - vec2(1.0f);

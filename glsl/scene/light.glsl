@@ -44,6 +44,12 @@ LIMN_FN bool light_is_distant_rectangle(Light light) {
   return light.type == light_directional && light.length_u > 0.0f;
 }
 
+// Whether a draw instance is the light's own surface. A flat light does not see itself; rounding must not decide on which
+// side of itself its places lie.
+LIMN_FN bool light_is_instance(Light light, uint instance) {
+  return light.own_instance != no_instance && light.own_instance == instance;
+}
+
 // What a light's points are, as seen from a receiver.
 LIMN_CONST uint light_kind_point = 0u;              // one point, or a square of a given size that stands for it
 LIMN_CONST uint light_kind_disc = 1u;               // directions within a cone

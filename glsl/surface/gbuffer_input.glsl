@@ -28,6 +28,11 @@ GBufferSurface pixel_surface(ivec2 pixel) {
 // Index of the draw instance, no_instance where there is none.
 uint pixel_instance(ivec2 pixel) { return texelFetch(gbuffer_instance, pixel, 0).x; }
 
+// Whether the pixel shows the light's own surface. Its instance is fetched only where the light has one.
+bool pixel_shows_light(ivec2 pixel, Light light) {
+  return light.own_instance != no_instance && light_is_instance(light, pixel_instance(pixel));
+}
+
 vec3 pixel_normal(ivec2 pixel) { return octahedral_decode(texelFetch(gbuffer_normal, pixel, 0).xy); }
 vec3 pixel_geometric_normal(ivec2 pixel) {
   return octahedral_decode(texelFetch(gbuffer_geometric_normal, pixel, 0).xy);
