@@ -226,7 +226,7 @@ int runRender(const RenderArguments& options) {
   renderer.configure(settings);
   renderer.setTime(view.time, view.animation);
 
-  const int framesPerPicture = view.aa * view.aa + render::historyOf(settings.techniques) - 1;
+  const int framesPerPicture = view.aa * view.aa + render::historyOf(settings.term, settings.techniques) - 1;
   Writer writer(options);
   if (frames) {
     Progress progress("rendering");

@@ -54,7 +54,7 @@ ShownPicture::Outcome ShownPicture::render(const scene::CameraPose& camera, doub
 }
 
 bool ShownPicture::takesMoreFrames(int aa) const {
-  return aa > 1 || render::historyOf(settings_.techniques) > 1;
+  return aa > 1 || render::historyOf(settings_.term, settings_.techniques) > 1;
 }
 
 std::optional<Image> ShownPicture::read(const scene::CameraPose& camera, int aa,
@@ -63,7 +63,7 @@ std::optional<Image> ShownPicture::read(const scene::CameraPose& camera, int aa,
   struct Cancelled {};
   try {
     // The first frame of a sequence, as in limn render; without a history frames are what they are.
-    if (render::historyOf(settings_.techniques) > 1) renderer_.configure(settings_);
+    if (render::historyOf(settings_.term, settings_.techniques) > 1) renderer_.configure(settings_);
     return render::supersample(renderer_, camera, settings_.size, aa, [&] {
       if (cancelled && cancelled()) throw Cancelled();
       renderer_.render();

@@ -10,6 +10,7 @@
 #include "core/gpu_scene/surface_input.h"
 #include "core/scene/scene.h"
 #include "glsl/indirect/gather.glsl"
+#include "glsl/materials/material_model.glsl"
 
 namespace limn::indirect {
 namespace {
@@ -23,6 +24,9 @@ constexpr int kSpreadShare = 8;  // it reaches at least this part of the picture
 // llvmpipe leaves all loops of a thread after 65,535 steps in all; the rest is for those around a thread's
 // lights.
 constexpr int kMostSteps = 65000;
+
+/// Of what enters translucent surfaces there is no specular part, though it is not Lambertian either.
+constexpr uint32_t kEntryAlone = 1u << glsl::model_entry;
 
 bool bounded(const GatherSettings& settings) {
   return settings.clamp > 0 || settings.bound == Bound::patch;
@@ -63,8 +67,9 @@ Gather::Gather(frame::FrameGraph& graph, const TechniqueInputs& inputs, std::str
       technique_(technique),
       lights_(lights),
       settings_(settings),
-      specular_(inputs.handles.modelKinds != 0 ||
-                !std::ranges::all_of(inputs.scene.materials, &scene::Material::lambertian)),
+      lambertian_(inputs.handles.modelKinds == 0 &&
+                  std::ranges::all_of(inputs.scene.materials, &scene::Material::lambertian)),
+      specular_(!lambertian_ && inputs.handles.modelKinds != kEntryAlone),
       residual_(settings.compensation && bounded(settings)),
       gbuffer_(inputs.gbuffer),
       size_(inputs.size) {
@@ -135,7 +140,7 @@ void Gather::declareShading(frame::PassBuilder& pass, ShadePass& shade, const GB
   shade.program.defines["GATHER_FALLING"] = falling_ ? "1" : "0";
   shade.program.defines["GATHER_GLOSSY"] = glossyBound_ ? "1" : "0";
   shade.program.defines["GATHER_PATCH"] = settings_.bound == Bound::patch ? "1" : "0";
-  shade.program.defines["LAMBERTIAN"] = specular_ ? "0" : "1";
+  shade.program.defines["LAMBERTIAN"] = lambertian_ ? "1" : "0";
 }
 
 /// Returns the passes that shade, whose threads take the lights of so many sub-buffers: one pass, but for

@@ -72,7 +72,8 @@ constexpr std::array<Parameter, N + 14> gatherParameters(const std::array<Parame
       boolean("blur", true, "Average over the pattern of interleaved pixels, not across edges"),
       real("blur_position", 0.1, {0, 1}, "scene extents", "Pixels farther apart than this are not averaged"),
       real("blur_plane", 0.01, {0, 1}, "scene extents",
-           "Pixels farther than this from each other's tangent planes are not averaged; 1: as published"),
+           "Pixels farther than this from a pixel's plane, across its shading normal, do not count in its "
+           "average; 1: as published"),
       real("blur_normal", 0.8, {-1, 1}, "cosine",
            "Pixels are not averaged where the cosine between their normals is below this"),
       real(
@@ -148,6 +149,7 @@ class LIMN_API Gather {
   std::string_view technique_;
   VirtualLights lights_;
   GatherSettings settings_;
+  bool lambertian_;  ///< no surface that is lit reflects otherwise
   bool specular_, residual_;
   bool blurred_ = false;
   bool falling_ = false;  ///< the clamp of a pixel falls with the lights of which the blur makes it the mean

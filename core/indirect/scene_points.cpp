@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "core/scene/draw_instance.h"
 #include "core/scene/instance_areas.h"
 #include "glsl/numeric/sampling.glsl"
 
@@ -82,13 +83,6 @@ void ScenePoints::update(const scene::Pose& pose) {
   graph_->touch(handle_);
 }
 
-const scene::Primitive& ScenePoints::primitive(const scene::Pose& pose,
-                                               const scene::DrawInstance& drawn) const {
-  const auto mesh = static_cast<size_t>(drawn.mesh);
-  if (drawn.node == scene::kNone) return *pose.dynamic[mesh].primitive;
-  return scene_.meshes[mesh].primitives[static_cast<size_t>(drawn.primitive)];
-}
-
 /// Areas of all instances.
 void ScenePoints::measure(const scene::Pose& pose) {
   known_.resize(pose.dynamic.size());
@@ -113,7 +107,7 @@ void ScenePoints::measure(const scene::Pose& pose) {
       tables_[i] = &deformed_[static_cast<size_t>(drawn.deformed)];
     } else {
       AreaTable& table = fixed_[firstOfMesh_[mesh] + static_cast<size_t>(drawn.primitive)];
-      const scene::Primitive& p = primitive(pose, drawn);
+      const scene::Primitive& p = scene::primitiveOf(scene_, pose, drawn);
       if (table.upTo.empty()) table.fill(p.positions, p.indices);
       tables_[i] = &table;
     }
@@ -121,7 +115,7 @@ void ScenePoints::measure(const scene::Pose& pose) {
     const glm::dmat3 toWorld{glm::dmat4(drawn.objectToWorld)};
     double scale = std::cbrt(std::abs(glm::determinant(toWorld)));
     if (!scalesAlike(toWorld)) {
-      const scene::Primitive& p = primitive(pose, drawn);
+      const scene::Primitive& p = scene::primitiveOf(scene_, pose, drawn);
       if (drawn.deformed != scene::kNone)
         scene::deform(p, pose.deformed[static_cast<size_t>(drawn.deformed)], positions, normals, tangents);
       stretched_[i].fill(drawn.deformed != scene::kNone ? positions : p.positions, p.indices, toWorld);
@@ -147,7 +141,7 @@ void ScenePoints::choose(const scene::Pose& pose) {
     const uint32_t instance = indexAt(upTo_, glsl::r2_sequence(static_cast<uint32_t>(i) + 1).x);
     const glm::vec3 u = glsl::r3_sequence(++chosen_[instance]);
     const uint32_t triangle = tables_[instance]->triangle(u.x);
-    const scene::Primitive& p = primitive(pose, pose.instances[instance]);
+    const scene::Primitive& p = scene::primitiveOf(scene_, pose, pose.instances[instance]);
     const uint32_t* corner = &p.indices[3 * size_t{triangle}];
     const float root = std::sqrt(u.y);
     points_[i] = {.corners = {corner[0], corner[1], corner[2]},

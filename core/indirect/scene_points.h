@@ -40,7 +40,6 @@ class ScenePoints {
  private:
   void measure(const scene::Pose& pose);
   void choose(const scene::Pose& pose);
-  const scene::Primitive& primitive(const scene::Pose& pose, const scene::DrawInstance& drawn) const;
 
   const scene::Scene& scene_;
   std::vector<AreaTable> fixed_, deformed_, dynamic_;

@@ -33,7 +33,8 @@ struct VirtualAreas {
 
 /// Declares k-means clustering by position and normal of `count` virtual point lights. It starts from light
 /// floor(k N / M) in every frame, so that lights that move a little give clusters that move a little. Lights
-/// without flux have no weight. A cluster may end up empty; then it has no light, and its map is empty.
+/// without flux have no weight. A cluster may end up empty; then it has no light, and its view looks out of
+/// the scene, so that nothing is drawn into its map.
 LIMN_API VirtualAreas addVirtualAreas(frame::FrameGraph& graph, const scene::GpuScene& scene,
                                       frame::BufferHandle lights, int count, const VirtualAreaDesc& desc);
 

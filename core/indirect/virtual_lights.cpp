@@ -1,11 +1,15 @@
 #include "core/indirect/virtual_lights.h"
 
 #include <algorithm>
+#include <cstring>
 #include <map>
 #include <string>
 #include <utility>
 
+#include "core/gpu_scene/gpu_medium.h"
 #include "core/gpu_scene/light_textures.h"
+#include "core/scene/medium.h"
+#include "core/scene/scene.h"
 #include "glsl/numeric/sampling.glsl"
 
 namespace limn::indirect {
@@ -23,6 +27,7 @@ struct LightBuilder {
   const shadow::ShadowMaps& maps;
   const VirtualLightDesc& desc;
   size_t lightCount;
+  BufferHandle mediumBlock;  ///< of the frame's block the medium alone; empty: the scene has none
 
   BufferHandle buffer(const char* name, size_t elements, size_t bytes) const {
     return graph.createBuffer(name, {elements * bytes});
@@ -37,11 +42,18 @@ struct LightBuilder {
         .read(maps.views, Access::storageLoad, "Views", "projections")
         .read(handles.lights, Access::storageLoad, "Lights", "what lights send");
     if (cacheable) pass.cacheable();
+    if (!cacheable)
+      pass.read(handles.frame, Access::uniformBuffer, "FrameBlock", "which set it is, medium");
+    else if (mediumBlock)
+      pass.read(mediumBlock, Access::uniformBuffer, "FrameBlock", "medium");
     scene::LightTextureInput(handles).declare(pass);
+    if (mediumBlock) scene::MediumInput(handles).declare(pass);
   }
   /// Of the shaders that read the maps' texels.
   gpu::ProgramDesc texelProgram(const char* file, std::map<std::string, std::string> defines) const {
     scene::LightTextureInput(handles).define(defines);
+    defines["MEDIUM"] = mediumBlock ? "1" : "0";
+    scene::MediumInput(handles).define(defines);
     return {.files = {file}, .defines = std::move(defines)};
   }
   BufferHandle tileFlux() const;
@@ -49,6 +61,13 @@ struct LightBuilder {
   BufferHandle sample(BufferHandle reflected) const;
   BufferHandle conserve(BufferHandle lights, BufferHandle reflected, BufferHandle sampled) const;
 };
+
+/// Returns the frame's block with nothing but the medium in it.
+glsl::FrameBlock mediumAlone(const scene::Scene& scene, const scene::Pose& pose) {
+  glsl::FrameBlock block{};
+  scene::setMedium(block, scene.medium, pose.bounds);
+  return block;
+}
 
 int tilesPerSide(int size) {
   return (size + kTile - 1) / kTile;
@@ -96,7 +115,6 @@ BufferHandle LightBuilder::layerFlux(BufferHandle values, bool sampled, uint32_t
 BufferHandle LightBuilder::sample(BufferHandle reflected) const {
   frame::PassBuilder pass = graph.addPass("virtual lights", "indirect");
   readMaps(pass, desc.sets == 1);
-  if (desc.sets > 1) pass.read(handles.frame, Access::uniformBuffer, "FrameBlock", "which set it is");
   pass.read(reflected, Access::storageLoad, "LayerFlux", "how many samples a map deserves")
       .read(maps.lights, Access::storageLoad, "MapLights", "which maps belong together");
   const BufferHandle lights =
@@ -139,6 +157,28 @@ BufferHandle LightBuilder::conserve(BufferHandle before, BufferHandle reflected,
 
 void VirtualLightService::begin() {
   known_.clear();
+  importedMedium_ = {};
+}
+
+bool VirtualLightService::update(frame::FrameGraph& graph, const scene::Pose& pose) {
+  if (!importedMedium_) return false;
+  const glsl::FrameBlock now = mediumAlone(scene_, pose);
+  if (std::memcmp(&now, &medium_, sizeof(now)) == 0) return false;
+  medium_ = now;
+  mediumBuffer_.update(0, &medium_, sizeof(medium_));
+  graph.touch(importedMedium_);
+  return false;
+}
+
+BufferHandle VirtualLightService::mediumBlock() {
+  if (!scene_.medium.present() || importedMedium_) return importedMedium_;
+  medium_ = mediumAlone(scene_, context().pose);
+  if (!mediumBuffer_)
+    mediumBuffer_ =
+        gpu::Buffer(device_, "medium of virtual lights", sizeof(medium_), gpu::BufferUse::updated);
+  mediumBuffer_.update(0, &medium_, sizeof(medium_));
+  importedMedium_ = context().graph.importBuffer("medium of virtual lights", mediumBuffer_);
+  return importedMedium_;
 }
 
 VirtualLights VirtualLightService::request(std::span<const uint32_t> lights, const VirtualLightDesc& desc) {
@@ -151,7 +191,7 @@ VirtualLights VirtualLightService::request(std::span<const uint32_t> lights, con
   VirtualLights made;
   made.maps = context().services.get<shadow::ShadowMapService>().request(lights, mapDesc);
   made.count = desc.count;
-  const LightBuilder build{context().graph, context().handles, made.maps, desc, lights.size()};
+  const LightBuilder build{context().graph, context().handles, made.maps, desc, lights.size(), mediumBlock()};
   const int across = tilesPerSide(desc.mapSize);
   made.reflected = build.layerFlux(build.tileFlux(), false, static_cast<uint32_t>(across * across));
   const BufferHandle sampled = build.sample(made.reflected);

@@ -4,19 +4,28 @@
 //
 // Sampling (glsl/indirect/sample_maps.comp.glsl): point i of the Halton sequence chooses a layer of the maps
 // in proportion to the flux that the layer reflects, and a texel of it. N is therefore split among the lights
-// by their contribution; a light whose share is below one virtual light gives its flux to the others. The sum
-// over all virtual lights is the flux that the maps reflect, in every channel, for each face of each light:
-// the maps of one face from several points of the light share one factor.
+// by their contribution. A group is one face of one light, whose maps from several points of the light share
+// one factor for each channel (glsl/indirect/conserve_flux.comp.glsl): the sum over its virtual lights is the
+// flux that it reflects. What groups reflect that no sample met, as where a light's share is below one
+// virtual light, is shared among the other groups in proportion to theirs, so that the sum over all virtual
+// lights is the flux that all maps reflect, in every channel that a sample met; the light of a channel that
+// no sample met is lost.
+//
+// Surfaces get of a light what the medium leaves of it (T_l, glsl/media/light_transmittance.glsl).
 #pragma once
 
+#include <algorithm>
 #include <cstdint>
+#include <deque>
 #include <span>
+#include <utility>
 #include <vector>
 
 #include "core/frame/frame_graph.h"
 #include "core/shadow/shadow_map.h"
 #include "core/technique/technique.h"
 #include "glsl/indirect/virtual_light.glsl"
+#include "glsl/scene/blocks.glsl"
 
 namespace limn::indirect {
 
@@ -44,19 +53,50 @@ class LIMN_API VirtualLightService : public FrameService {
  public:
   static constexpr const char* serviceName = "virtual lights";
 
+  /// `device` and `scene` must outlive the service.
+  VirtualLightService(gpu::Device& device, const scene::Scene& scene) : device_(device), scene_(scene) {}
+
   /// Returns virtual lights of `lights` (indices into Pose::lights, at least one). Throws UsageError when the
   /// maps would take too much memory.
   VirtualLights request(std::span<const uint32_t> lights, const VirtualLightDesc& desc);
 
  private:
   void begin() override;
+  bool update(frame::FrameGraph& graph, const scene::Pose& pose) override;
+  /// Returns a block like the frame's that holds the medium alone, so that lights are kept while only the
+  /// camera moves; empty: the scene has no medium.
+  frame::BufferHandle mediumBlock();
 
   struct Known {
     std::vector<uint32_t> lights;
     VirtualLightDesc desc;
     VirtualLights made;
   };
+  gpu::Device& device_;
+  const scene::Scene& scene_;
   std::vector<Known> known_;
+  glsl::FrameBlock medium_{};
+  gpu::Buffer mediumBuffer_;
+  frame::BufferHandle importedMedium_;  ///< in the current graph; empty: nobody asked for it
+};
+
+/// Keeps what a technique makes of the virtual lights of some lights for as long as its graph. A scene with
+/// translucent surfaces asks it once with each G-buffer (TechniqueInputs::gbuffer), and what does not depend
+/// on the surfaces that are lit is made once for both.
+template <class Made>
+class MadeForLights {
+ public:
+  /// Returns what was made for these lights (indices into Pose::lights): what `make` returns, which is called
+  /// the first time.
+  template <class Make>
+  Made& get(std::span<const uint32_t> lights, Make make) {
+    for (auto& [known, made] : made_)
+      if (std::ranges::equal(known, lights)) return made;
+    return made_.emplace_back(std::vector<uint32_t>(lights.begin(), lights.end()), make()).second;
+  }
+
+ private:
+  std::deque<std::pair<std::vector<uint32_t>, Made>> made_;
 };
 
 }  // namespace limn::indirect

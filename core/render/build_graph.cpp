@@ -65,7 +65,7 @@ frame::TextureHandle Renderer::Implementation::ask(Use& use, Term term, std::spa
   const TechniquePlugin& plugin = *use.settings->plugin;
   inputs.bound = settings.bound && hasBound(plugin);
   const frame::TextureHandle answer = inTechnique(plugin, [&] {
-    return use.technique->addPasses(*graph, inputs, {term, lights, lit.radiance});
+    return use.technique->addPasses(*graph, inputs, {term, lights, lit.radiance, settings.light >= 0});
   });
   if (!answer)
     throw Error(fmt::format("{}: it answers {} with nothing", described(plugin), limn::name(term)));
@@ -99,12 +99,8 @@ void Renderer::Implementation::noteEmitting() {
 
 std::vector<uint32_t> Renderer::Implementation::activeLights() {
   std::vector<uint32_t> lights;
-  const bool replaced = settings.light < 0 && answering(Term::environment) != nullptr;
-  if (replaced && !scene.environment.lights.empty())
-    graph->leaveOut("lights of the environment", "core", "a technique answers the environment's light");
   for (uint32_t i = 0; i < pose.lights.size(); ++i) {
     if (settings.light >= 0 && static_cast<uint32_t>(settings.light) != i) continue;
-    if (replaced && (pose.lights[i].flags & glsl::light_flag_environment) != 0) continue;
     if (!emits(i) && !isFactor(settings.term) && !forced(Saving::darkLights)) {
       graph->leaveOut(fmt::format("light {}", pose.lightNames[i]), "core", "it emits nothing");
       continue;
@@ -114,6 +110,16 @@ std::vector<uint32_t> Renderer::Implementation::activeLights() {
   return lights;
 }
 
+std::vector<uint32_t> Renderer::Implementation::directLights(std::span<const uint32_t> lights) {
+  std::vector<uint32_t> direct(lights.begin(), lights.end());
+  if (settings.light >= 0 || !answering(Term::environment)) return direct;
+  const size_t replaced = std::erase_if(direct, [&](uint32_t light) { return standsForEnvironment(light); });
+  if (replaced > 0)
+    graph->leaveOut("direct light of the environment's lights", "core",
+                    "a technique answers the environment's light");
+  return direct;
+}
+
 frame::TextureHandle Renderer::Implementation::factorTarget(Term term, int layers) {
   return graph->createTexture(limn::name(term),
                               {GL_TEXTURE_2D_ARRAY, GL_R16, settings.size.x, settings.size.y, layers, 1});
@@ -121,9 +127,8 @@ frame::TextureHandle Renderer::Implementation::factorTarget(Term term, int layer
 
 size_t Renderer::Implementation::lightsByRatio(std::span<const uint32_t> lights) {
   if (!scene.environment.shadowedByRatio || settings.light >= 0) return 0;
-  return static_cast<size_t>(std::ranges::count_if(lights, [&](uint32_t light) {
-    return (pose.lights[light].flags & glsl::light_flag_environment) != 0;
-  }));
+  return static_cast<size_t>(
+      std::ranges::count_if(lights, [&](uint32_t light) { return standsForEnvironment(light); }));
 }
 
 void Renderer::Implementation::addDirect(std::span<Lighting> lightings, std::span<const uint32_t> lights) {
@@ -215,7 +220,7 @@ std::vector<Renderer::Implementation::Lighting> Renderer::Implementation::lighti
   if (reflected) result.push_back(seen);
   if (!gpuScene.hasTranslucent()) {
     if (const Use* use = answering(Term::subsurface))
-      graph->leaveOut("subsurface", use->settings->plugin->info->name, "no material is translucent");
+      graph->leaveOut("subsurface", use->settings->plugin->info->name, "no surface is translucent");
     return result;
   }
   if (reflected)
@@ -232,8 +237,9 @@ std::vector<Renderer::Implementation::Lighting> Renderer::Implementation::lighti
 
 void Renderer::Implementation::addLight(std::span<Lighting> lightings, std::span<const uint32_t> lights) {
   if (contains(summed, Term::direct)) {
-    if (!lights.empty())
-      addDirect(lightings, lights);
+    const std::vector<uint32_t> direct = directLights(lights);
+    if (!direct.empty())
+      addDirect(lightings, direct);
     else
       graph->leaveOut("lights", "core", "the scene has no light");
     addEnvironment(lightings);
@@ -303,7 +309,7 @@ frame::TextureHandle Renderer::Implementation::addRadiance() {
 
 frame::TextureHandle Renderer::Implementation::addFactor() {
   const Term term = settings.term;
-  const std::vector<uint32_t> lights = activeLights();
+  const std::vector<uint32_t> lights = directLights(activeLights());
   if (lights.size() != 1)
     throw UsageError(
         fmt::format("--output-term {} shows one light; choose it with --light", limn::name(term)));

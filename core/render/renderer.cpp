@@ -90,7 +90,9 @@ bool Renderer::render(frame::Timing timing, const frame::FrameGraph::Cancelled& 
 }
 
 int Renderer::framesOfPicture() const {
-  return implementation_->frameIndex == 0 ? historyOf(implementation_->settings.techniques) : 1;
+  return implementation_->frameIndex == 0
+             ? historyOf(implementation_->settings.term, implementation_->settings.techniques)
+             : 1;
 }
 
 const gpu::Texture& Renderer::display() const {

@@ -85,9 +85,9 @@ LIMN_API int bouncesOf(Term term, const std::vector<TechniqueUse>& techniques);
 /// it; 0 where none answers or the picture shows no specular surfaces.
 LIMN_API int interfacesOf(Term term, const std::vector<TechniqueUse>& techniques);
 
-/// Returns over how many frames the picture averages: the most that a technique does, its parameter
-/// `history`, or 1.
-LIMN_API int historyOf(const std::vector<TechniqueUse>& techniques);
+/// Returns over how many frames a picture of `term` averages: the largest parameter `history` of the
+/// techniques that it asks for light or shadows, or 1.
+LIMN_API int historyOf(Term term, const std::vector<TechniqueUse>& techniques);
 
 class LIMN_API Renderer {
  public:

@@ -55,6 +55,15 @@ void refuseReliefBesideDirect(const std::vector<TechniqueUse>& techniques) {
       fmt::format("no technique given answers the term {}; limn list says which do", limn::name(term)));
 }
 
+/// Returns the terms that techniques are asked for in a picture of `term`.
+TermSet termsAsked(Term term) {
+  if (term == Term::final || term == Term::specular) return kAnswerableTerms;
+  TermSet terms = termSet(term);
+  if (term == Term::subsurface) terms = terms | Term::direct | Term::indirect;
+  if (contains(terms, Term::direct)) terms = terms | Term::visibility | Term::relief | Term::environment;
+  return terms;
+}
+
 /// Returns the parameter of that name, or `otherwise` for techniques that have none.
 int parameterOr(const TechniqueUse& use, std::string_view parameter, int otherwise) {
   return use.parameters.has(parameter) ? use.parameters.integer(parameter) : otherwise;
@@ -102,9 +111,11 @@ int bouncesOf(Term term, const std::vector<TechniqueUse>& techniques) {
   return bounces;
 }
 
-int historyOf(const std::vector<TechniqueUse>& techniques) {
+int historyOf(Term term, const std::vector<TechniqueUse>& techniques) {
+  const TermSet asked = termsAsked(term);
   int frames = 1;
-  for (const TechniqueUse& use : techniques) frames = std::max(frames, parameterOr(use, "history", 1));
+  for (const TechniqueUse& use : techniques)
+    if ((termsOf(use) & asked) != 0) frames = std::max(frames, parameterOr(use, "history", 1));
   return frames;
 }
 

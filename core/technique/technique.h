@@ -101,6 +101,9 @@ struct TermRequest {
   /// result is a separate texture, black where no specular surface is seen. Other terms: RGBA32F radiance to
   /// add to; subsurface is asked for only where the scene has translucent surfaces.
   frame::TextureHandle target;
+  /// Says whether one light was chosen (--light): nothing else lights the picture, neither other lights nor
+  /// the environment, whatever the scene has.
+  bool chosen = false;
 };
 
 /// Answers requests; there is one instance per use in a frame graph. Holds what lives as long as the graph

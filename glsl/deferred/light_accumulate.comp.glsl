@@ -22,11 +22,6 @@ vec3 unshadowed(Light light, SurfaceMaterial material, vec3 position, GBufferSur
   return unshadowed_light(light, material.brdf, position, surface.normal, surface.geometric_normal, v);
 }
 
-// A flat light does not see itself; rounding must not decide on which side of itself its pixels lie.
-bool is_itself(Light light, ivec2 pixel) {
-  return light.own_instance != no_instance && pixel_instance(pixel) == light.own_instance;
-}
-
 void main() {
   ivec2 pixel = ivec2(gl_GlobalInvocationID.xy);
   if (any(greaterThanEqual(pixel, ivec2(frame.frame_size)))) return;
@@ -41,7 +36,7 @@ void main() {
   int i = 0;
   do {  // the condition comes last: software renderers run a loop's body once more where it comes first
     float lit = light_factor(pixel, i);
-    if (lit > 0.0 && !is_itself(lights[light_indices[i]], pixel)) {
+    if (lit > 0.0 && !pixel_shows_light(pixel, lights[light_indices[i]])) {
       vec3 arriving = unshadowed(lights[light_indices[i]], material, position, surface, v) *
                       light_texture(lights[light_indices[i]], position);
 #if MEDIUM

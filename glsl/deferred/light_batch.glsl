@@ -1,8 +1,8 @@
 // A batch of lights, and what is left of each at a pixel. LIGHT_COUNT: how many. VISIBILITY 1, RELIEF 1: V and W are known, a layer
-// per light; else they are 1. MEDIUM 1: the medium takes its part.
+// per light; else they are 1. MEDIUM 1: the medium takes its part (light_transmittance()).
 #ifndef LIMN_LIGHT_BATCH_GLSL
 #define LIMN_LIGHT_BATCH_GLSL
-#include "glsl/media/medium_input.glsl"
+#include "glsl/media/light_transmittance.glsl"
 #include "glsl/scene/light.glsl"
 
 layout(std430) readonly buffer Lights { Light lights[]; };
@@ -24,19 +24,6 @@ float light_factor(ivec2 pixel, int i) {
   lit *= texelFetch(relief, ivec3(pixel, i), 0).x;
 #endif
   return lit;
-}
-
-// T_l: of the medium, from a light's centre to a surface point.
-vec3 light_transmittance(Light light, vec3 position) {
-#if MEDIUM
-  Medium medium = scene_medium();
-  float inside = light.type == light_directional
-                     ? medium_length(medium, position, -light.direction, 3.0e38)
-                     : medium_length_between(medium, light.position, position);
-  return medium_transmittance(medium, inside);
-#else
-  return vec3(1.0);
-#endif
 }
 
 #endif  // LIMN_LIGHT_BATCH_GLSL

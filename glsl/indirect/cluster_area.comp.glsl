@@ -1,5 +1,5 @@
 // The area light of each cluster: the rectangle around its virtual lights in the plane of their mean normal, and the view
-// of its paraboloid map.
+// of its paraboloid map. An empty cluster looks out of the scene, from far away: nothing is drawn for it.
 #include "glsl/indirect/cluster_members.glsl"
 #include "glsl/shadow/paraboloid.glsl"
 
@@ -24,7 +24,8 @@ void main() {
   vec3 any_normal = some_normal();
   vec3 axis = cluster.normal.xyz == vec3(0.0) ? any_normal : cluster.normal.xyz;
   bool empty = cluster.count <= 0.0;
-  ShadowView view = paraboloid_view(cluster.position, axis, near, empty ? 0.0 : far, k, map_size);
+  vec3 origin = cluster.position + (empty ? 1e3 * far * axis : vec3(0.0));
+  ShadowView view = paraboloid_view(origin, axis, near, far, k, map_size);
   vec4 bounds = vec4(3.0e38);  // least along both axes, greatest negated
   for (uint i = gl_LocalInvocationIndex; i < light_count; i += THREADS) {
     if (!member(i)) continue;

@@ -1,5 +1,5 @@
 // Scales virtual lights so that each channel of their sum over a group is the flux that the group reflects, and what
-// groups reflect that no sample met is shared among the rest.
+// groups reflect that no sample met is shared among the rest. The light of a channel that no sample met at all is lost.
 #include "glsl/indirect/map_groups.glsl"
 #include "glsl/indirect/virtual_light.glsl"
 

@@ -1,8 +1,10 @@
-// Texels of reflective shadow maps as the passes that make virtual lights read them.
+// Texels of reflective shadow maps as the passes that make virtual lights read them. MEDIUM 1: the medium takes of the light on its
+// way to them.
 #ifndef LIMN_REFLECTIVE_TEXEL_GLSL
 #define LIMN_REFLECTIVE_TEXEL_GLSL
 #include "glsl/surface/gbuffer.glsl"
 #include "glsl/light/light_texture.glsl"
+#include "glsl/media/light_transmittance.glsl"
 #include "glsl/indirect/reflective_map.glsl"
 
 uniform sampler2DArray reflective_depth;
@@ -18,12 +20,14 @@ struct ReflectiveTexel {
   vec3 flux;      // reflected, W per unit of map area; 0 where there is nothing
 };
 
-// Intensity that the light has for a texel of its map.
-vec3 texel_intensity(uint index, vec3 origin, ReflectiveTexel t) {
-  Light light = lights[index];
+// Intensity that the light of a view has for a texel of its map, without a medium.
+vec3 texel_intensity(ShadowView view, ReflectiveTexel t) {
+  Light light = lights[view.light];
   vec3 intensity = reflective_map_intensity(light, t.position, light_samples);
-  if (light.type == light_rectangle)
-    intensity = reflective_map_rectangle_intensity(light, origin, t.position, t.normal, light_samples);
+  if (reflective_map_is_rectangle(light)) {
+    vec3 towards = view.projection == shadow_orthographic ? -view.axis_z : view.origin - t.position;
+    intensity = reflective_map_rectangle_intensity(light, towards, t.position, t.normal, light_samples);
+  }
   return intensity * light_texture(light, t.position);
 }
 
@@ -38,7 +42,10 @@ ReflectiveTexel reflective_texel(ShadowView view, ivec2 texel) {
     t.position += shadow_world_offset(view, shadow_texel_offset(view, texel, stored));
     vec3 albedo = gbuffer_colour_decode(texelFetch(reflective_albedo, at, 0).rgb);
     vec2 uv = (vec2(texel) + 0.5) / float(view.size);
-    t.flux = albedo * texel_intensity(view.light, view.origin, t) * reflective_map_measure(view, uv);
+    t.flux = albedo * texel_intensity(view, t) * reflective_map_measure(view, uv);
+#if MEDIUM
+    t.flux *= light_transmittance(lights[view.light], t.position);
+#endif
   }
   return t;
 }

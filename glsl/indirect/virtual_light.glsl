@@ -6,7 +6,7 @@ LIMN_BEGIN
 
 // A point of a lit surface that sends light on (Keller 1997, "Instant radiosity"): a Lambertian sender of radiant
 // intensity flux / pi * cos(angle to the normal). Element of a storage buffer; a point where the light met nothing has
-// flux 0, and so costs nothing downstream.
+// flux 0: no receiver is lit by it, nothing is drawn into its map, and it counts in no cluster.
 struct VirtualPointLight {
   vec3 position;  // world, m
   float cluster;  // that the light belongs to, in a sorted list

@@ -3,9 +3,8 @@
 #include <fmt/format.h>
 
 #include <array>
-#include <memory>
+#include <deque>
 #include <optional>
-#include <vector>
 
 #include "core/frame/array_block.h"
 #include "core/indirect/gather.h"
@@ -87,30 +86,37 @@ constexpr StressCase kStress[] = {
 };
 
 class ClusteredVisibility : public Technique {
+  /// Holds what some lights have, whatever surfaces are lit.
+  struct Made {
+    indirect::VirtualAreas areas;
+    std::optional<indirect::ShadePass> pass = {};  ///< empty where clusters are shown
+  };
+  indirect::MadeForLights<Made> made_;
   std::optional<shadow::DerivedMaps> derived_;
   gpu::Sampler trilinear_;
-  indirect::ParaboloidMapPass trianglePass_;
-  std::vector<std::unique_ptr<indirect::PointMapPass>> pointPasses_;  ///< one for each request
+  std::deque<indirect::ParaboloidMapPass> trianglePasses_;  ///< the graph keeps their addresses
+  std::optional<indirect::PointMapPass> points_;            ///< empty: maps of triangles
 
   indirect::ParaboloidMaps addMaps(frame::FrameGraph& graph, const TechniqueInputs& inputs,
                                    const indirect::VirtualAreas& areas) {
     const ParameterValues& p = inputs.parameters;
     const int size = p.integer("map_size");
     if (p.choice("maps") == 0)
-      return trianglePass_.add(graph, inputs.gpuScene, inputs.handles, areas.views,
-                               {.count = areas.count, .size = size, .technique = info.name});
+      return trianglePasses_.emplace_back().add(graph, inputs.gpuScene, inputs.handles, areas.views,
+                                                {.count = areas.count, .size = size, .technique = info.name});
     const int points = p.integer("points");
-    indirect::PointMapPass& pass = *pointPasses_.emplace_back(std::make_unique<indirect::PointMapPass>(
-        inputs.gpuScene.device(), inputs.scene, inputs.pose, points, kWindows));
-    pass.place(graph, inputs.handles, info.name);
-    return pass.add(graph, inputs.gpuScene.device(), areas.views,
-                    {.count = areas.count,
-                     .size = size,
-                     .points = points,
-                     .splat = p.real("splat"),
-                     .fillLevels = p.integer("fill_levels"),
-                     .fillDepth = kFillDepth,
-                     .technique = info.name});
+    if (!points_) {
+      points_.emplace(inputs.gpuScene.device(), inputs.scene, inputs.pose, points, kWindows);
+      points_->place(graph, inputs.handles, info.name);
+    }
+    return points_->add(graph, inputs.gpuScene.device(), areas.views,
+                        {.count = areas.count,
+                         .size = size,
+                         .points = points,
+                         .splat = p.real("splat"),
+                         .fillLevels = p.integer("fill_levels"),
+                         .fillDepth = kFillDepth,
+                         .technique = info.name});
   }
 
   /// The picture of the clusters, instead of light.
@@ -152,7 +158,7 @@ class ClusteredVisibility : public Technique {
     const ParameterValues& p = inputs.parameters;
     gpu::Device& device = inputs.gpuScene.device();
     const indirect::ParaboloidMaps maps = addMaps(graph, inputs, areas);
-    derived_.emplace(device);
+    if (!derived_) derived_.emplace(device);
     const shadow::MinMaxPyramid pyramid = derived_->minMaxPyramid(graph, maps.depth, true);
     const shadow::FourierMaps fourier = fourierMaps(graph, device, maps.depth, pyramid, p);
     indirect::ShadePass pass{.program = {.files = {"techniques/clustered_visibility/shade.comp.glsl"},
@@ -195,25 +201,28 @@ class ClusteredVisibility : public Technique {
     const indirect::GatherSettings settings = indirect::gatherSettings(p);
     indirect::VirtualLights lights = inputs.service<indirect::VirtualLightService>().request(
         request.lights, indirect::virtualLightDesc(p));
-    const indirect::VirtualAreas areas =
-        indirect::addVirtualAreas(graph, inputs.gpuScene, lights.lights, lights.count,
-                                  {.count = p.integer("vals"),
-                                   .iterations = p.integer("iterations"),
-                                   .weightPosition = p.real("weight_position"),
-                                   .weightAngle = p.real("weight_angle"),
-                                   .near = p.real("near"),
-                                   .mapSize = p.integer("map_size"),
-                                   .block = indirect::usableBlock(settings.block, lights.count),
-                                   .technique = info.name});
-    if (p.choice("show") == 1) return showClusters(graph, inputs, areas, request.target);
-    lights.lights = areas.lights;
+    Made& made = made_.get(request.lights, [&] {
+      return Made{.areas =
+                      indirect::addVirtualAreas(graph, inputs.gpuScene, lights.lights, lights.count,
+                                                {.count = p.integer("vals"),
+                                                 .iterations = p.integer("iterations"),
+                                                 .weightPosition = p.real("weight_position"),
+                                                 .weightAngle = p.real("weight_angle"),
+                                                 .near = p.real("near"),
+                                                 .mapSize = p.integer("map_size"),
+                                                 .block = indirect::usableBlock(settings.block, lights.count),
+                                                 .technique = info.name})};
+    });
+    if (p.choice("show") == 1) return showClusters(graph, inputs, made.areas, request.target);
+    lights.lights = made.areas.lights;
     indirect::Gather gather(graph, inputs, info.name, lights, settings);
-    gather.shade(shadePass(graph, inputs, areas));
+    if (!made.pass) made.pass = shadePass(graph, inputs, made.areas);
+    gather.shade(*made.pass);
     return gather.finish(request.target);
   }
 
   bool update(const scene::Pose& pose) override {
-    for (const auto& pass : pointPasses_) pass->update(pose);
+    if (points_) points_->update(pose);
     return false;
   }
 

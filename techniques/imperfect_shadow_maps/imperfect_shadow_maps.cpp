@@ -2,8 +2,7 @@
 // instead of triangles.
 #include <algorithm>
 #include <array>
-#include <memory>
-#include <vector>
+#include <optional>
 
 #include "core/gpu_scene/gpu_scene.h"
 #include "core/indirect/light_maps.h"
@@ -52,6 +51,21 @@ class ImperfectShadowMaps : public Technique {
                                       .stress = kStress};
 
  private:
+  /// Holds what some lights have, whatever surfaces are lit.
+  struct Made {
+    frame::BufferHandle views;
+    std::optional<indirect::ParaboloidMaps> maps = {};  ///< of all virtual lights, where they exist at once
+  };
+
+  /// Returns the maps of some of the lights. Batches share memory, so that each request fills them again.
+  indirect::ParaboloidMaps maps(frame::FrameGraph& graph, const TechniqueInputs& inputs, Made& made,
+                                const indirect::PointMapDesc& desc) {
+    if (made.maps) return *made.maps;
+    const indirect::ParaboloidMaps filled = points_->add(graph, inputs.gpuScene.device(), made.views, desc);
+    if (desc.cacheable) made.maps = filled;
+    return filled;
+  }
+
   frame::TextureHandle addPasses(frame::FrameGraph& graph, const TechniqueInputs& inputs,
                                  const TermRequest& request) override {
     if (request.lights.empty()) {
@@ -63,35 +77,39 @@ class ImperfectShadowMaps : public Technique {
         request.lights, indirect::virtualLightDesc(p));
     const int size = p.integer("map_size");
     const int batch = std::min(lights.count, indirect::paraboloidBatch(inputs.gpuScene.device(), size));
-    const frame::BufferHandle views = indirect::addLightViews(
-        graph, inputs, lights, {.size = size, .batch = batch, .technique = info.name});
+    Made& made = made_.get(request.lights, [&] {
+      return Made{.views = indirect::addLightViews(graph, inputs, lights,
+                                                   {.size = size, .batch = batch, .technique = info.name})};
+    });
     const int points = p.integer("points");
-    indirect::PointMapPass& maps = *passes_.emplace_back(std::make_unique<indirect::PointMapPass>(
-        inputs.gpuScene.device(), inputs.scene, inputs.pose, points, kWindows));
-    maps.place(graph, inputs.handles, info.name);
+    if (!points_) {
+      points_.emplace(inputs.gpuScene.device(), inputs.scene, inputs.pose, points, kWindows);
+      points_->place(graph, inputs.handles, info.name);
+    }
     indirect::Gather gather(graph, inputs, info.name, lights, indirect::gatherSettings(p));
     for (int first = 0; first < lights.count; first += batch) {
-      const indirect::ParaboloidMaps filled = maps.add(graph, inputs.gpuScene.device(), views,
-                                                       {.count = std::min(batch, lights.count - first),
-                                                        .first = first,
-                                                        .size = size,
-                                                        .points = points,
-                                                        .splat = p.real("splat"),
-                                                        .fillLevels = p.integer("fill_levels"),
-                                                        .fillDepth = p.real("fill_depth"),
-                                                        .technique = info.name,
-                                                        .cacheable = batch == lights.count});
+      const indirect::ParaboloidMaps filled = maps(graph, inputs, made,
+                                                   {.count = std::min(batch, lights.count - first),
+                                                    .first = first,
+                                                    .size = size,
+                                                    .points = points,
+                                                    .splat = p.real("splat"),
+                                                    .fillLevels = p.integer("fill_levels"),
+                                                    .fillDepth = p.real("fill_depth"),
+                                                    .technique = info.name,
+                                                    .cacheable = batch == lights.count});
       gather.shade(indirect::lightMapShadePass(inputs, filled, p.real("bias")));
     }
     return gather.finish(request.target);
   }
 
   bool update(const scene::Pose& pose) override {
-    for (const auto& pass : passes_) pass->update(pose);
+    if (points_) points_->update(pose);
     return false;
   }
 
-  std::vector<std::unique_ptr<indirect::PointMapPass>> passes_;  ///< one for each request
+  indirect::MadeForLights<Made> made_;
+  std::optional<indirect::PointMapPass> points_;  ///< empty: nobody has asked yet
 };
 
 }  // namespace

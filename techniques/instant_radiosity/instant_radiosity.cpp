@@ -1,8 +1,8 @@
 // Instant radiosity (Keller 1997) with a shadow map for every virtual light: the brute-force answer.
 #include <algorithm>
 #include <array>
-#include <memory>
-#include <vector>
+#include <deque>
+#include <optional>
 
 #include "core/gpu_scene/gpu_scene.h"
 #include "core/indirect/light_maps.h"
@@ -19,7 +19,8 @@ constexpr auto kParameters = indirect::gatherParameters(
             .logScale(),
         real("bias", 0.25, {0, 64}, "texel footprints",
              "How far a blocker must lie above the receiver's tangent plane to count"),
-        integer("memory", 512, {16, 1024}, "MiB", "Maps drawn at once take no more than this"),
+        integer("memory", 512, {16, 1024}, "MiB",
+                "Maps drawn at once take no more than this, or are one map"),
     }),
     1);
 constexpr StressCase kStress[] = {
@@ -42,6 +43,22 @@ class InstantRadiosity : public Technique {
                                       .stress = kStress};
 
  private:
+  /// Holds what some lights have, whatever surfaces are lit.
+  struct Made {
+    frame::BufferHandle views;
+    std::optional<indirect::ParaboloidMaps> maps = {};  ///< of all virtual lights, where they exist at once
+  };
+
+  /// Returns the maps of some of the lights. Batches share memory, so that each request draws them again.
+  indirect::ParaboloidMaps maps(frame::FrameGraph& graph, const TechniqueInputs& inputs, Made& made,
+                                const indirect::ParaboloidDesc& desc) {
+    if (made.maps) return *made.maps;
+    const indirect::ParaboloidMaps drawn =
+        passes_.emplace_back().add(graph, inputs.gpuScene, inputs.handles, made.views, desc);
+    if (desc.cacheable) made.maps = drawn;
+    return drawn;
+  }
+
   frame::TextureHandle addPasses(frame::FrameGraph& graph, const TechniqueInputs& inputs,
                                  const TermRequest& request) override {
     if (request.lights.empty()) {
@@ -55,26 +72,26 @@ class InstantRadiosity : public Technique {
     const int64_t fitting = (int64_t{p.integer("memory")} << 20) / indirect::paraboloidBytes(size);
     const int batch = static_cast<int>(std::clamp<int64_t>(
         fitting, 1, std::min(lights.count, indirect::paraboloidBatch(inputs.gpuScene.device(), size))));
-    const frame::BufferHandle views = indirect::addLightViews(
-        graph, inputs, lights, {.size = size, .batch = batch, .technique = info.name});
+    Made& made = made_.get(request.lights, [&] {
+      return Made{.views = indirect::addLightViews(graph, inputs, lights,
+                                                   {.size = size, .batch = batch, .technique = info.name})};
+    });
     indirect::Gather gather(graph, inputs, info.name, lights, indirect::gatherSettings(p));
     for (int first = 0; first < lights.count; first += batch) {
       const int count = std::min(batch, lights.count - first);
-      maps_.push_back(std::make_unique<indirect::ParaboloidMapPass>());
-      gather.shade(
-          indirect::lightMapShadePass(inputs,
-                                      maps_.back()->add(graph, inputs.gpuScene, inputs.handles, views,
-                                                        {.count = count,
-                                                         .first = first,
-                                                         .size = size,
-                                                         .technique = info.name,
-                                                         .cacheable = count == lights.count}),
-                                      p.real("bias")));
+      const indirect::ParaboloidMaps drawn = maps(graph, inputs, made,
+                                                  {.count = count,
+                                                   .first = first,
+                                                   .size = size,
+                                                   .technique = info.name,
+                                                   .cacheable = count == lights.count});
+      gather.shade(indirect::lightMapShadePass(inputs, drawn, p.real("bias")));
     }
     return gather.finish(request.target);
   }
 
-  std::vector<std::unique_ptr<indirect::ParaboloidMapPass>> maps_;
+  indirect::MadeForLights<Made> made_;
+  std::deque<indirect::ParaboloidMapPass> passes_;  ///< the graph keeps their addresses
 };
 
 }  // namespace

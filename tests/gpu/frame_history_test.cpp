@@ -168,6 +168,18 @@ TEST_F(FrameHistoryTest, OneFrameHasNoPassAndNoTextureForIt) {
   }
 }
 
+/// They would all be the same.
+TEST_F(FrameHistoryTest, PicturesWithoutItsLightTakeOneFrame) {
+  const scene::Scene scene = asset("cornell_box");
+  render::Renderer renderer(device(), scene);
+  render::Settings s = gathered(64, kFrames);
+  renderer.configure(s);
+  EXPECT_EQ(renderer.framesOfPicture(), kFrames);
+  s.term = Term::direct;
+  renderer.configure(s);
+  EXPECT_EQ(renderer.framesOfPicture(), 1);
+}
+
 /// Where balls hid the wall it was not seen before, though the camera stands still: the frame has its own
 /// light alone there. Its virtual lights are those of the first frame, as kFrames sets take turns.
 TEST_F(FrameHistoryTest, GeometryThatChangesLeavesNoTraceOnWhatItHid) {

@@ -1,6 +1,8 @@
 // Techniques that are asked for some of their terms, beside others for the rest.
 #include <algorithm>
 #include <set>
+#include <utility>
+#include <vector>
 
 #include "core/base/error.h"
 #include "core/shading/environment_decomposition.h"
@@ -20,6 +22,13 @@ class RestrictedTermsTest : public RenderTest {
   static Image shown(render::Renderer& renderer, Term term, std::vector<render::TechniqueUse> techniques,
                      int light = -1) {
     return picture(renderer, settings(48, 36, term, std::move(techniques), light));
+  }
+  static scene::Scene underTwoLightsOfTheSky() {
+    scene::Scene scene = asset("balls_sky");
+    scene.environment.lights =
+        shading::decomposeEnvironment(scene.environment, {.threshold = 0.1, .resolution = 24}).lights;
+    scene.environment.lights.resize(2);
+    return scene;
   }
   static bool alike(const Image& a, const Image& b) { return std::ranges::equal(a.data(), b.data()); }
   /// Of the last frame.
@@ -78,10 +87,7 @@ TEST_F(RestrictedTermsTest, OtherTermsOfATechniqueHaveNoPicture) {
 
 /// Bounces of lights that stand for the environment do not hold its map as well.
 TEST_F(RestrictedTermsTest, TheEnvironmentIsNotReflectedBesideItsLights) {
-  scene::Scene scene = asset("balls_sky");
-  scene.environment.lights =
-      shading::decomposeEnvironment(scene.environment, {.threshold = 0.1, .resolution = 24}).lights;
-  scene.environment.lights.resize(2);
+  const scene::Scene scene = underTwoLightsOfTheSky();
   scene::Scene black = scene;
   std::ranges::fill(black.environment.texels, glm::vec3(0));
   render::Renderer own(device(), scene), without(device(), black);
@@ -90,6 +96,30 @@ TEST_F(RestrictedTermsTest, TheEnvironmentIsNotReflectedBesideItsLights) {
     EXPECT_TRUE(alike(reflected, shown(without, Term::indirect, {shadows(), bounces()}, light))) << light;
     EXPECT_GT(mean(reflected), 0) << light;
   }
+}
+
+/// A technique that answers the environment takes the place of the lights that stand for it in direct light
+/// alone: over surfaces and in the medium their light comes as without it, and once.
+TEST_F(RestrictedTermsTest, LightsOfTheEnvironmentAreReplacedInDirectLightAlone) {
+  scene::Scene scene = underTwoLightsOfTheSky();
+  scene.medium.sigmaS = glm::vec3(0.05f);
+  scene::Scene bare = scene;
+  bare.environment.lights.clear();
+  render::Renderer renderer(device(), scene), withoutLights(device(), bare);
+  const render::TechniqueUse sky =
+      technique("sampled_environment_light", {{"samples", "4"}, {"shadow_map_size", "128"}});
+  const std::vector<std::pair<Term, render::TechniqueUse>> others{
+      {Term::indirect, technique("reflective_shadow_map", {{"vpls", "64"}, {"rsm_size", "64"}})},
+      {Term::media, technique("airlight", {{"shadow_map_size", "128"}})}};
+  for (const auto& [term, other] : others) {
+    const Image alone = shown(renderer, term, {other});
+    EXPECT_GT(mean(alone), mean(shown(withoutLights, term, {other}))) << name(term);
+    EXPECT_TRUE(alike(shown(renderer, term, {sky, other}), alone)) << name(term);
+  }
+  EXPECT_TRUE(alike(shown(renderer, Term::direct, {sky}), shown(withoutLights, Term::direct, {sky})));
+  EXPECT_TRUE(alike(shown(renderer, Term::indirect, {bounces(kAnswerableTerms)}),
+                    shown(renderer, Term::indirect, {bounces()})))
+      << "whether or not it answers the environment, too";
 }
 
 }  // namespace

@@ -5,6 +5,7 @@
 
 #include <algorithm>
 #include <random>
+#include <utility>
 
 #include "glsl/indirect/gather.glsl"
 #include "glsl/shadow/shadow_view.glsl"
@@ -227,6 +228,26 @@ TEST_F(VirtualAreasTest, NothingToClusterDoesNoHarm) {
     counted += std::max(area.count, 0.f);
   }
   EXPECT_EQ(counted, 64);
+}
+
+/// Everything lies behind their views, where triangles end before they are rasterised.
+TEST_F(VirtualAreasTest, EmptyClustersLookOutOfTheScene) {
+  Lights dark = room(100);
+  for (auto& l : dark) l.flux = {};
+  const Lights same(64, light(vec3(0.5f), {0, 0, 1}));  // the first cluster has all of them
+  for (const auto& [lights, empty] : {std::pair(dark, 8), std::pair(same, 7)}) {
+    const Clusters c = cluster(lights, {.count = 8});
+    int found = 0;
+    for (size_t k = 0; k < c.areas.size(); ++k) {
+      if (c.areas[k].count > 0) continue;
+      ++found;
+      for (int corner = 0; corner < 8; ++corner) {
+        const vec3 side(corner & 1 ? 1 : -1, corner & 2 ? 1 : -1, corner & 4 ? 1 : -1);
+        EXPECT_LT(glsl::shadow_local(c.views[k], 0.5f * kExtent / std::sqrt(3.f) * side).z, 0) << k;
+      }
+    }
+    EXPECT_EQ(found, empty);
+  }
 }
 
 TEST_F(VirtualAreasTest, SortedByClusterWithinEachSubBuffer) {

@@ -104,9 +104,14 @@ struct Renderer::Implementation {
   }
   bool emits(size_t light) const { return pose.lights[light].emission != glm::vec3(0); }
   void noteEmitting();
-  /// Returns the lights that can contribute: the one asked for, or all that emit, without those whose place a
-  /// technique takes.
+  bool standsForEnvironment(uint32_t light) const {
+    return (pose.lights[light].flags & glsl::light_flag_environment) != 0;
+  }
+  /// Returns the lights that can contribute: the one asked for, or all that emit.
   std::vector<uint32_t> activeLights();
+  /// Returns those of the lights whose direct light nobody else answers: of the environment's lights a
+  /// technique that answers the environment takes the place there, and only there.
+  std::vector<uint32_t> directLights(std::span<const uint32_t> lights);
   frame::TextureHandle factorTarget(Term term, int layers);
   /// Returns how many lights, the last ones, stand for the environment whose light has the shadows of theirs.
   size_t lightsByRatio(std::span<const uint32_t> lights);

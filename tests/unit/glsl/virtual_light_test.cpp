@@ -77,7 +77,7 @@ Light rectangle(float u, float v) {
 }
 
 float fromRectangle(const Light& light, vec3 p, vec3 n, int samples) {
-  return reflective_map_rectangle_intensity(light, vec3(0), p, n, samples).x;
+  return reflective_map_rectangle_intensity(light, -p, p, n, samples).x;
 }
 
 /// Of radiance 3 and 1e-6 square metres.
@@ -109,13 +109,49 @@ TEST(ReflectiveMap, SurfacesSeenEdgeOnStayFinite) {
   EXPECT_GE(edgeOn, 0);
 }
 
+/// The face of a cube, seen from its middle over a solid angle of 2 pi / 3, gives a surface that faces it pi
+/// F per radiance, with the form factor F = 4 / pi sqrt(1/2) atan(sqrt(1/2)) of a square half its side away
+/// (Lambert 1760), and one that is tilted and sees the whole of it, by symmetry, the cosine times as much.
+TEST(ReflectiveMap, DistantRectanglesGiveTheirExactIrradiance) {
+  Light light = rectangle(2, 2);
+  light.type = light_directional;
+  light.position = vec3(0, 0, 1);
+  light.flags = light_flag_environment;
+  light.solid_angle = 2 * pi / 3;
+  ASSERT_TRUE(reflective_map_is_rectangle(light));
+  const double factor = 4 / double(pi) * std::sqrt(0.5) * std::atan(std::sqrt(0.5));
+  const double facing = 3 * double(pi) * factor / (2 * double(pi) / 3);
+  for (const float tilt : {0.f, 0.5f})
+    for (const int samples : {1, 4}) {
+      const vec3 n(std::sin(tilt), 0, std::cos(tilt));
+      const double given =
+          reflective_map_rectangle_intensity(light, vec3(0, 0, 1), vec3(7, 8, 9), n, samples).x;
+      EXPECT_NEAR(given * samples / facing, 1, 1e-5) << tilt;
+    }
+  light.flags |= light_flag_centre;
+  EXPECT_FALSE(reflective_map_is_rectangle(light)) << "it is reflected as one direction";
+  EXPECT_FLOAT_EQ(reflective_map_intensity(light, vec3(7, 8, 9), 1).x, 3);
+}
+
 TEST(ReflectiveMap, PointsHaveNoExtentToSample) {
   Light light = rectangle(0, 0);
   light.type = light_point;
   EXPECT_FLOAT_EQ(reflective_map_intensity(light, vec3(0, 0, 1), 4).x, 3);
   light.type = light_directional;
-  light.angular_diameter = 0.1f;
-  EXPECT_FLOAT_EQ(reflective_map_intensity(light, vec3(0, 0, 1), 4).x, 0.75f);
+  EXPECT_FLOAT_EQ(reflective_map_intensity(light, vec3(0, 0, 1), 4).x, 3);
+}
+
+/// The directions to a disc, even in solid angle, have the mean cosine (1 + cos a) / 2 to its middle, a half
+/// its angle: with it together they give a surface that faces it the light's irradiance.
+TEST(ReflectiveMap, DirectionsToADiscGiveItsIrradianceTogether) {
+  Light light = rectangle(0, 0);
+  light.type = light_directional;
+  for (const float diameter : {0.1f, 1.f, 2.5f}) {
+    light.angular_diameter = diameter;
+    const double mean = 0.5 * (1 + std::cos(0.5 * double(diameter)));
+    EXPECT_FLOAT_EQ(reflective_map_intensity(light, vec3(0, 0, 1), 1).x, 3) << "all of it from its middle";
+    EXPECT_NEAR(4 * double(reflective_map_intensity(light, vec3(0, 0, 1), 4).x) * mean, 3, 1e-5) << diameter;
+  }
 }
 
 }  // namespace

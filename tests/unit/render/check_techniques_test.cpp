@@ -146,5 +146,27 @@ TEST(BouncesOf, FollowsTheParameterOfWhatAnswersIndirect) {
   EXPECT_EQ(bouncesOf(Term::visibility, {several.use()}), 0);
 }
 
+TEST(HistoryOf, IsOfTechniquesThatThePictureAsks) {
+  static constexpr Parameter kHistory[] = {integer("history", 4, {1, 16}, "frames", "Averaged")};
+  const Claimant bounces("bounces", termSet(Term::indirect), kHistory),
+      shadows("shadows", termSet(Term::visibility), kHistory),
+      both("both", Term::visibility | Term::indirect, kHistory), plain("plain", termSet(Term::indirect));
+  for (const Term term : {Term::final, Term::indirect, Term::subsurface, Term::specular}) {
+    EXPECT_EQ(historyOf(term, {bounces.use(), plain.use()}), 4) << limn::name(term);
+    EXPECT_EQ(historyOf(term, {plain.use()}), 1) << limn::name(term);
+  }
+  for (const Term term : {Term::direct, Term::visibility, Term::relief, Term::caustic, Term::media})
+    EXPECT_EQ(historyOf(term, {bounces.use()}), 1) << limn::name(term);
+  for (const Term term : {Term::final, Term::direct, Term::visibility, Term::subsurface, Term::specular})
+    EXPECT_EQ(historyOf(term, {shadows.use()}), 4) << limn::name(term);
+  for (const Term term : {Term::indirect, Term::relief, Term::caustic, Term::media})
+    EXPECT_EQ(historyOf(term, {shadows.use()}), 1) << limn::name(term);
+  TechniqueUse part = both.use();
+  part.terms = termSet(Term::visibility);
+  EXPECT_EQ(historyOf(Term::indirect, {both.use()}), 4);
+  EXPECT_EQ(historyOf(Term::indirect, {part}), 1) << "it is not asked for it";
+  EXPECT_EQ(historyOf(Term::final, {}), 1);
+}
+
 }  // namespace
 }  // namespace limn::render
