@@ -68,6 +68,7 @@ LightBounds LightBounds::of(const glsl::Light& light) {
       b.centre = -light.direction;
       b.radius = std::sin(0.5f * light.angular_diameter);
       b.distant = true;
+      b.wideDisc = light.angular_diameter > kWidestDisc;
       break;
     default:  // a distant rectangle: its centre is a direction
       b.centre = glm::normalize(light.position);
@@ -275,9 +276,13 @@ void BlockerLists::build(const SceneElements& elements, const Links* links,
   parts_.resize(parts);
   hidden_.assign(leaves, 0);
   for (size_t l = 0; l < lights.size(); ++l) {
+    const std::span<Range> ranges = std::span(ranges_).subspan(l * leaves, leaves);
+    if (lights[l].wideDisc) {
+      std::ranges::fill(ranges, Range{});
+      continue;
+    }
     if (links) findHidden(elements, *links, lights[l]);
     findReceivers(elements, lights[l]);
-    const std::span<Range> ranges = std::span(ranges_).subspan(l * leaves, leaves);
     tbb::parallel_for(0u, parts, [&](uint32_t part) {
       std::vector<uint32_t>& out = parts_[part].triangles;
       out.clear();

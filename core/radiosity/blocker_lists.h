@@ -21,8 +21,15 @@ struct LightBounds {
   glm::vec3 centre{0};  ///< of a sphere, m; of a distant light: the unit vector towards it
   float radius = 0;     ///< of the sphere, m; of a distant light: the sine of half the angle it spans
   bool distant = false;
+  /// Says whether it is a disc of directions whose angular diameter exceeds kWidestDisc.
+  bool wideDisc = false;
   std::array<glm::vec3, 2> halves{};    ///< halves of a rectangle's sides, m; of others 0
   uint32_t object = glsl::no_instance;  ///< that the light is, which does not hide it
+
+  /// Limits the discs of directions for which there are lists, radians. The points that lists are tested with
+  /// lie evenly on the plane across the disc's axis, and not evenly in solid angle as V counts them: up to
+  /// this angle that changes V by less than 0.008.
+  static constexpr float kWidestDisc = 0.4f;
 
   LIMN_API static LightBounds of(const glsl::Light& light);
 };
@@ -37,7 +44,7 @@ class LIMN_API BlockerLists {
     uint32_t count = kUnlisted;
   };
   /// Stands for the number of triangles of a leaf that has no list: it is turned away from the light or in
-  /// full shadow, its list would be longer than kLongest, or there was no room.
+  /// full shadow, its list would be longer than kLongest, there was no room, or the light is a wide disc.
   static constexpr uint32_t kUnlisted = ~0u;
   static constexpr uint32_t kLongest = 4096;
   /// Marks a triangle in a list that hides from both sides; of the others only the front does.

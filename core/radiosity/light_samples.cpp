@@ -50,28 +50,38 @@ class Shadow {
   bool distant_;
 };
 
+/// Returns what the medium leaves of a light at a place: from the light's centre, as T_l of pictures.
+glm::vec3 lightTransmittance(const glsl::Light& light, const LitPlace& place, const Occlusion& occlusion) {
+  if (light.type == glsl::light_directional)
+    return occlusion.transmittance(place.position, -light.direction, std::numeric_limits<float>::max());
+  const glm::vec3 way = light.position - place.position;
+  const float distance = glm::length(way);
+  return distance > 0 ? occlusion.transmittance(place.position, way / distance, distance) : glm::vec3(1);
+}
+
 }  // namespace
 
 void addLight(const glsl::Light& light, const LitPlace& place, const Occlusion& occlusion, int rays,
               LightAtPlace& sum) {
-  // A flat light does not see itself; rounding must not decide on which side of itself it lies.
-  if (light.own_instance != glsl::no_instance && light.own_instance == place.instance) return;
+  if (glsl::light_is_instance(light, place.instance)) return;
   const glsl::LightView view = glsl::light_view(light, place.position, place.normal, -1);
   if (view.masked) return;
   glsl::SurfaceBrdf white{};
   white.diffuse = glm::vec3(1);
   white.alpha = 1;
-  const glm::vec3 irradiance = glsl::pi * glsl::unshadowed_light(light, white, place.position, place.normal,
-                                                                 place.normal, place.normal);
+  glm::vec3 irradiance = glsl::pi * glsl::unshadowed_light(light, white, place.position, place.normal,
+                                                           place.normal, place.normal);
   if (irradiance == glm::vec3(0)) return;
+  irradiance *= lightTransmittance(light, place, occlusion);
   const Shadow shadow(light, view, place, occlusion);
-  if (!view.extended) {
-    if (shadow.hides(view.centre)) return;
-    const glm::vec3 direction = glm::normalize(view.centre);
+  const auto addAsOne = [&](const glm::vec3& slope, float spread) {
+    if (shadow.hides(slope)) return;
+    const glm::vec3 direction = glm::normalize(slope);
     sum.irradiance += irradiance;
-    sum.incident.push_back({direction, 0, irradiance / std::max(glm::dot(direction, place.normal), 1e-6f)});
-    return;
-  }
+    sum.incident.push_back(
+        {direction, spread, irradiance / std::max(glm::dot(direction, place.normal), 1e-6f)});
+  };
+  if (!view.extended) return addAsOne(view.centre, 0);
   const glm::vec3 towards = glm::normalize(view.centre);
   const float across = std::sqrt(glm::length(view.side_u) * glm::length(view.side_v)) *
                        (view.cone ? glsl::light_view_cone_scale(view, 1) : 1);
@@ -104,8 +114,10 @@ void addLight(const glsl::Light& light, const LitPlace& place, const Occlusion& 
     if (cosine > 0)
       sum.incident.push_back({direction, spread / float(side), here * irradiance / std::max(cosine, 1e-3f)});
   }
+  // With few rays none may have gone to a point of the light above the tangent plane.
+  if (!(whole > 0)) return addAsOne(glsl::light_view_single_point(view), spread);
   for (size_t i = first; i < sum.incident.size(); ++i) sum.incident[i].irradiance /= whole;
-  if (whole > 0) sum.irradiance += irradiance * (seen / whole);
+  sum.irradiance += irradiance * (seen / whole);
 }
 
 void lightLeaves(const SceneElements& elements, std::span<const glsl::Light> lights,

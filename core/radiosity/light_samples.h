@@ -28,9 +28,9 @@ struct LightAtPlace {
   std::vector<glsl::IncidentLight> incident;
 };
 
-/// Adds the light of a light: exact where nothing hides it, and hidden by `rays` rays or more to an extended
-/// light, to strata of its area. Light below the horizon does not arrive, nor does that of the instance that
-/// the place is on.
+/// Adds the light of a light: exact where nothing hides it, attenuated by the medium from the light's centre
+/// on, and hidden by `rays` rays or more to an extended light, to strata of its area. Light below the horizon
+/// does not arrive, nor does that of the instance that the place is on.
 LIMN_API void addLight(const glsl::Light& light, const LitPlace& place, const Occlusion& occlusion, int rays,
                        LightAtPlace& sum);
 

@@ -34,7 +34,9 @@ struct LinkSettings {
   /// A bin is closed where its neighbours, all but one, are nearer than this part of its distance; more than
   /// 0.
   double closing = 0.5;
-  /// Sine of how far below their horizon receivers see: normals of pixels differ from those of vertices.
+  /// Sine of how far below a receiver's horizon discs that are wider than four bins fill bins, at least: the
+  /// normals of pixels differ from those of vertices, and further down nobody looks. Narrower discs and
+  /// triangles fill all bins that they cover.
   double belowHorizon = 0.2;
   bool operator==(const LinkSettings&) const = default;
 };

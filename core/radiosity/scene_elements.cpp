@@ -7,16 +7,14 @@
 #include <cmath>
 
 #include "core/base/error.h"
+#include "core/scene/draw_instance.h"
 #include "core/scene/instance_areas.h"
+#include "core/scene/normal_matrix.h"
 #include "core/scene/texture_lookup.h"
 #include "glsl/surface/reflectance.glsl"
 
 namespace limn::radiosity {
 namespace {
-
-bool mirrors(const glm::mat4& matrix) {
-  return glm::determinant(glm::dmat3(glm::dmat4(matrix))) < 0;
-}
 
 /// The sum of what the triangles have with these places of their vertices.
 double deformedArea(const scene::Primitive& primitive, const std::vector<glm::vec3>& positions) {
@@ -33,37 +31,44 @@ double deformedArea(const scene::Primitive& primitive, const std::vector<glm::ve
 
 /// One instance's vertices in world space.
 struct SceneElements::Instance {
+  /// Holds the vertices in one state of a skin and morph targets, before the matrix.
+  struct Deformed {
+    scene::Deformation state;
+    std::vector<glm::vec3> positions, normals;
+    std::vector<glm::vec4> tangents;  ///< nobody looks at them; deform() makes them
+    double area = 0;                  ///< of all triangles
+  };
+
   const scene::Primitive* primitive = nullptr;
   /// The same of geometry sources, which fill again what nobody holds.
   std::shared_ptr<const scene::Primitive> held;
   int material = 0;
   bool mirrored = false;
-  glm::dvec3 areas{0};             ///< factors by which the matrix changed areas when the elements were made
-  double madeArea = 0;             ///< of deformed instances, before the matrix, when the elements were made
-  double area = 0;                 ///< the same now
-  scene::Deformation deformation;  ///< by which it became so
+  glm::dvec3 areas{0};  ///< factors by which the matrix changed areas when the elements were made
+  double madeArea = 0;  ///< of deformed instances, before the matrix, when the elements were made
+  /// Holds those of the pose that was asked for last: fits() and then update() ask for that of a frame.
+  mutable Deformed deformed;
   std::vector<glm::vec3> positions, normals;
-  std::vector<glm::vec4> tangents;  ///< nobody looks at them; deform() makes them
+
+  const Deformed& deformedIn(const scene::Pose& pose, const scene::DrawInstance& draw) const {
+    const scene::Deformation& asked = pose.deformed[static_cast<size_t>(draw.deformed)];
+    const scene::Deformation& known = deformed.state;
+    if (!deformed.positions.empty() && asked.joints == known.joints &&
+        asked.morphWeights == known.morphWeights)
+      return deformed;
+    deformed.state = asked;
+    scene::deform(*primitive, asked, deformed.positions, deformed.normals, deformed.tangents);
+    deformed.area = deformedArea(*primitive, deformed.positions);
+    return deformed;
+  }
 
   void move(const scene::Pose& pose, const scene::DrawInstance& draw) {
-    if (draw.deformed != scene::kNone) {
-      deformation = pose.deformed[static_cast<size_t>(draw.deformed)];
-      scene::deform(*primitive, deformation, positions, normals, tangents);
-      area = deformedArea(*primitive, positions);
-    } else {
-      positions.assign(primitive->positions.begin(), primitive->positions.end());
-      normals.assign(primitive->normals.begin(), primitive->normals.end());
-    }
+    const Deformed* moved = draw.deformed != scene::kNone ? &deformedIn(pose, draw) : nullptr;
+    positions = moved ? moved->positions : primitive->positions;
+    normals = moved ? moved->normals : primitive->normals;
     const glm::mat4& matrix = draw.objectToWorld;
-    const glm::dmat3 m{glm::dmat4(matrix)};
-    mirrored = mirrors(matrix) != draw.mirroredSkin;
-    // The inverse transpose but for its length, which no flat instance can make infinite.
-    const double scale = std::max({glm::length(m[0]), glm::length(m[1]), glm::length(m[2]), 1e-300});
-    const glm::dmat3 unit = m * (1 / scale);
-    const double side = mirrors(matrix) ? -1 : 1;
-    const glm::mat3 toNormal(glm::dmat3(side * glm::cross(unit[1], unit[2]),
-                                        side * glm::cross(unit[2], unit[0]),
-                                        side * glm::cross(unit[0], unit[1])));
+    mirrored = scene::mirrored(draw);
+    const glm::mat3 toNormal = scene::normalMatrix(matrix);
     tbb::parallel_for(size_t{0}, positions.size(), [&](size_t i) {
       positions[i] = glm::vec3(matrix * glm::vec4(positions[i], 1.f));
       const glm::vec3 n = toNormal * normals[i];
@@ -75,28 +80,9 @@ struct SceneElements::Instance {
   /// Whether a skin or morph targets leave the area nearly as it was when the elements were made.
   bool keepsArea(const scene::Pose& pose, const scene::DrawInstance& draw) const {
     if (draw.deformed == scene::kNone) return true;
-    const scene::Deformation& next = pose.deformed[static_cast<size_t>(draw.deformed)];
-    double nextArea = area;
-    if (next.joints != deformation.joints || next.morphWeights != deformation.morphWeights) {
-      std::vector<glm::vec3> places, directions;
-      std::vector<glm::vec4> alongs;
-      scene::deform(*primitive, next, places, directions, alongs);
-      nextArea = deformedArea(*primitive, places);
-    }
-    return scene::areasAlike(glm::dvec3(nextArea), glm::dvec3(madeArea));
+    return scene::areasAlike(glm::dvec3(deformedIn(pose, draw).area), glm::dvec3(madeArea));
   }
 };
-
-namespace {
-
-const scene::Primitive* primitiveOf(const scene::Scene& scene, const scene::Pose& pose,
-                                    const scene::DrawInstance& draw) {
-  const auto mesh = static_cast<size_t>(draw.mesh);
-  if (draw.node == scene::kNone) return pose.dynamic[mesh].primitive.get();
-  return &scene.meshes[mesh].primitives[static_cast<size_t>(draw.primitive)];
-}
-
-}  // namespace
 
 SceneElements::SceneElements(const scene::Scene& scene, const scene::Pose& pose, float longestEdge,
                              uint32_t maxElements, double lift, LeafShape shape)
@@ -104,12 +90,9 @@ SceneElements::SceneElements(const scene::Scene& scene, const scene::Pose& pose,
   uint64_t triangles = 0;
   for (const scene::DrawInstance& draw : pose.instances) {
     Instance& instance = instances_.emplace_back();
-    instance.primitive = primitiveOf(scene, pose, draw);
-    instance.material = instance.primitive->material;
-    if (draw.node == scene::kNone) {
-      instance.held = pose.dynamic[static_cast<size_t>(draw.mesh)].primitive;
-      instance.material = scene.dynamic[static_cast<size_t>(draw.mesh)].material;
-    }
+    instance.primitive = &scene::primitiveOf(scene, pose, draw);
+    instance.material = scene::materialIndexOf(scene, draw);
+    if (draw.node == scene::kNone) instance.held = pose.dynamic[static_cast<size_t>(draw.mesh)].primitive;
     instance.areas = scene::areaFactors(draw.objectToWorld);
     triangles += instance.primitive->indices.size() / 3;
   }
@@ -120,7 +103,7 @@ SceneElements::SceneElements(const scene::Scene& scene, const scene::Pose& pose,
   // A closed mesh has half as many vertices as triangles.
   if (triangles / 4 > maxElements) refuse(fmt::format("the scene has {} triangles", triangles));
   moveInstances(pose);
-  for (Instance& instance : instances_) instance.madeArea = instance.area;
+  for (Instance& instance : instances_) instance.madeArea = instance.deformed.area;
   std::vector<TriangleMesh> meshes(instances_.size());
   for (size_t i = 0; i < instances_.size(); ++i) {
     const Instance& instance = instances_[i];
@@ -150,8 +133,8 @@ SceneElements::~SceneElements() = default;
 
 bool SceneElements::fits(const scene::Pose& pose, std::span<const scene::DrawInstance> instances) const {
   const auto same = [&](const scene::DrawInstance& now, const Instance& known) {
-    return primitiveOf(scene_, pose, now) == known.primitive &&
-           (mirrors(now.objectToWorld) != now.mirroredSkin) == known.mirrored &&
+    return &scene::primitiveOf(scene_, pose, now) == known.primitive &&
+           scene::mirrored(now) == known.mirrored &&
            scene::areasAlike(scene::areaFactors(now.objectToWorld), known.areas) &&
            known.keepsArea(pose, now);
   };

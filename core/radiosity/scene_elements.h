@@ -16,7 +16,7 @@
 
 namespace limn::radiosity {
 
-/// Holds a leaf as shaders see it (storage buffer element, glsl/radiosity.glsl), in world space.
+/// Holds a leaf as shaders see it (storage buffer element, glsl/indirect/surface_leaf.glsl), in world space.
 struct Leaf {
   glm::vec3 vertex{0};    ///< where triangles meet, m
   float used = 0;         ///< 1, or 0 for unused slots

@@ -11,6 +11,9 @@ class SceneOcclusion final : public Occlusion {
   bool blocked(const glm::vec3& origin, const glm::vec3& direction, float end) const override {
     return rays_.occluded(origin, direction, end);
   }
+  glm::vec3 transmittance(const glm::vec3& origin, const glm::vec3& direction, float end) const override {
+    return rays_.medium().transmittance(origin, direction, end);
+  }
 
  private:
   reference::RayScene rays_;

@@ -141,6 +141,12 @@ LIMN_FN vec3 light_view_highest(LightView v) {
   return v.centre + (0.5f * light_view_cone_scale(v, 1.0f) / max(length(rise), 1e-20f)) * rise;
 }
 
+// The point that stands for a light of which no sample lies above the tangent plane: the centre, or, where that is below the plane,
+// the highest. Above the plane unless the light is masked.
+LIMN_FN vec3 light_view_single_point(LightView v) {
+  return dot(v.centre, v.normal) > 0.0f ? v.centre : light_view_highest(v);
+}
+
 // Whether the ray with this slope meets the light, give or take `tolerance` metres per metre of depth.
 LIMN_FN bool light_view_contains(LightView v, vec3 slope, float tolerance) {
   vec3 offset = slope - v.centre;

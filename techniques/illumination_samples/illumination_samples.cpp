@@ -108,11 +108,12 @@ class IlluminationSamples : public Technique {
     }
     const ParameterValues& p = inputs.parameters;
     using Criterion = radiosity::TreeSettings::Criterion;
-    const bool relative = p.choice("criterion") == 1;
+    const bool relative = p.choice("criterion") == 1, immediate = p.choice("reflection") == 1;
     radiosity::TreeSettings tree{.criterion = relative ? Criterion::relative : Criterion::transport,
                                  .error = p.real("direction_error"),
                                  .minLevel = std::min(p.integer("min_level"), p.integer("max_level")),
-                                 .maxLevel = p.integer("max_level")};
+                                 .maxLevel = p.integer("max_level"),
+                                 .frozen = !immediate};
     if (p.choice("basis") == 1) {
       tree.basis = radiosity::TreeSettings::Basis::uniform;
       tree.maxLevel = std::min(tree.maxLevel, radiosity::DirectionalTree::kMaxUniformLevel);
@@ -127,7 +128,7 @@ class IlluminationSamples : public Technique {
                                                 .widen = p.real("widen"),
                                                 .receiver = p.choice("receiver") == 1,
                                                 .tree = tree,
-                                                .immediate = p.choice("reflection") == 1,
+                                                .immediate = immediate,
                                                 .memory = uint64_t(p.integer("memory")) << 20},
                                     .shownTree = shownTree,
                                     .shown = shown,

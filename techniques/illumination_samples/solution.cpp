@@ -36,7 +36,10 @@ Elements::Elements(frame::FrameGraph& graph, const TechniqueInputs& inputs, cons
   parents = graph.importBuffer("parents of element groups", parentBuffer_);
   frame::PassBuilder pass = graph.addPass("update elements", settings.technique);
   pass.read(inputs.handles.geometry, Access::storageLoad, "vertices, which the CPU moves as well")
+      .read(inputs.handles.instances, Access::storageLoad, "where instances are")
       .cacheable();
+  if (inputs.handles.density)
+    pass.read(inputs.handles.density, Access::sampled, "smoke, which the CPU has as well");
   leaves = pass.write(leaves, Access::copyTarget, "vertices and normals");
   pass.execute([this](frame::PassContext&) {
     elements_.update(pose_);

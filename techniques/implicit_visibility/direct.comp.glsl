@@ -1,6 +1,7 @@
 // What leaves reflect of the lights and of the environment, and so send on. With GLOSSY a thread for each direction, and
-// lights alone.
+// lights alone. MEDIUM 1: light of lights is attenuated on its way to the leaf.
 #include "glsl/light/unshadowed_light.glsl"
+#include "glsl/media/light_transmittance.glsl"
 #include "techniques/implicit_visibility/elements.glsl"
 
 layout(local_size_x = 64) in;
@@ -41,9 +42,12 @@ void main() {
   if (sends) {
 #if LIGHTS
     for (uint l = 0u; l < light_count; ++l) {
-      // A flat light does not see itself; rounding must not decide on which side of itself it lies.
-      if (lights[indices[l]].own_instance == groups[slot / 4u].object) continue;
-      sum += seen[l * slots + slot] * unshadowed_light(lights[indices[l]], surface, leaf.position.xyz, n, n, view);
+      if (light_is_instance(lights[indices[l]], groups[slot / 4u].object)) continue;
+      vec3 lit = seen[l * slots + slot] * unshadowed_light(lights[indices[l]], surface, leaf.position.xyz, n, n, view);
+#if MEDIUM
+      lit *= light_transmittance(lights[indices[l]], leaf.position.xyz);
+#endif
+      sum += lit;
     }
 #endif
 #if ENVIRONMENT && !GLOSSY

@@ -90,6 +90,7 @@ void ElementPasses::createBuffers(gpu::Device& device) {
 void ElementPasses::addUpdate(frame::FrameGraph& graph, const TechniqueInputs& inputs) {
   frame::PassBuilder pass = graph.addPass("update elements", settings_.technique);
   pass.read(inputs.handles.geometry, Access::storageLoad, "vertices, which the CPU moves as well")
+      .read(inputs.handles.instances, Access::storageLoad, "where instances are")
       .cacheable();
   groups = pass.write(groups, Access::copyTarget, "discs and bounds of all levels");
   leaves = pass.write(leaves, Access::copyTarget, "vertices and normals");

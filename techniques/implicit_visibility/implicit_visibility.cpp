@@ -49,7 +49,8 @@ constexpr Parameter kParameters[] = {
         "closing", radiosity::LinkSettings{}.closing, {0.01, 1}, "of a bin's distance",
         "Single bins take the links of neighbours that are nearer than this; on the GPU empty bins alone do"),
     real("below_horizon", radiosity::LinkSettings{}.belowHorizon, {0, 1}, "sine",
-         "How far below their horizon vertices see, whose normals differ from pixels'; links=cpu"),
+         "How far below a vertex's horizon a disc wider than four bins fills bins, since normals of pixels "
+         "differ from its; narrower discs and triangles fill all that they cover; links=cpu"),
     real("longest_edge", 0.03, {0.005, 10}, "scene radii", "Longer edges of triangles are halved")
         .quality()
         .logScale(),
@@ -86,11 +87,11 @@ constexpr StressCase kStress[] = {
      .settings = "closing=0.01 bins=8",
      .factor = 4},
     {.name = "all single bins closed", .scene = "cornell_box", .settings = "closing=1 bins=8", .factor = 4},
-    {.name = "nothing below the horizon",
+    {.name = "wide discs end at the horizon",
      .scene = "cornell_box",
      .settings = "below_horizon=0 bins=8",
      .factor = 4},
-    {.name = "all below the horizon",
+    {.name = "wide discs go on below the horizon",
      .scene = "cornell_box",
      .settings = "below_horizon=1 bins=8",
      .factor = 4},
@@ -136,8 +137,7 @@ class ImplicitVisibility : public Technique {
   frame::TextureHandle addPasses(frame::FrameGraph& graph, const TechniqueInputs& inputs,
                                  const TermRequest& request) override {
     const PassRequest r{graph, inputs, request.target};
-    const bool sky =
-        request.term == Term::environment || (inputs.scene.environment && asksForAll(inputs, request));
+    const bool sky = request.term == Term::environment || includesEnvironment(inputs, request);
     if (request.term == Term::indirect && request.lights.empty() && !sky) {
       graph.leaveOut("indirect light", info.name, "the scene has no light");
       return request.target;
@@ -160,19 +160,13 @@ class ImplicitVisibility : public Technique {
 
   bool update(const scene::Pose& pose) override { return elements_ && !elements_->fits(pose); }
 
-  /// Whether no light of the scene's own is left out: then the environment is asked for, too, unless lights
-  /// stand for it.
-  static bool asksForAll(const TechniqueInputs& inputs, const TermRequest& request) {
-    const auto ofEnvironment = [](const glsl::Light& light) {
-      return (light.flags & glsl::light_flag_environment) != 0;
+  /// Returns whether the environment is a light of the request: unless another one was chosen, or lights
+  /// stand for it, which would count it twice.
+  static bool includesEnvironment(const TechniqueInputs& inputs, const TermRequest& request) {
+    const auto standsForIt = [&](uint32_t light) {
+      return (inputs.pose.lights[light].flags & glsl::light_flag_environment) != 0;
     };
-    const auto own = [&](const glsl::Light& light) {
-      return !ofEnvironment(light) && light.emission != glm::vec3(0);
-    };
-    const auto standsForIt = [&](uint32_t light) { return ofEnvironment(inputs.pose.lights[light]); };
-    if (std::ranges::any_of(request.lights, standsForIt)) return false;
-    return static_cast<std::ptrdiff_t>(request.lights.size()) >=
-           std::ranges::count_if(inputs.pose.lights, own);
+    return inputs.scene.environment && !request.chosen && std::ranges::none_of(request.lights, standsForIt);
   }
 
   void begin(frame::FrameGraph& graph, const TechniqueInputs& inputs) {

@@ -3,7 +3,10 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <map>
+#include <string>
 
+#include "core/gpu_scene/gpu_medium.h"
 #include "core/gpu_scene/gpu_scene.h"
 #include "core/radiosity/illumination.h"
 #include "core/shading_maps/shading_maps.h"
@@ -20,15 +23,21 @@ SeenLights LightPasses::seenBy(const PassRequest& r, std::span<const uint32_t> l
   return seen(r, lights).handles;
 }
 
-Gathered LightPasses::reflected(const PassRequest& r, std::span<const uint32_t> lights, bool sky,
-                                int bounces) {
+const Gathered& LightPasses::reflected(const PassRequest& r, std::span<const uint32_t> lights, bool sky,
+                                       int bounces) {
+  for (const Reflected& known : reflected_)
+    if (known.sky == sky && known.bounces == bounces && std::ranges::equal(known.lights, lights))
+      return known.gathered;
   auto [direct, outgoing] = directLight(r, lights, sky);
-  Gathered gathered;
+  Reflected& own = reflected_.emplace_back();
+  own.lights.assign(lights.begin(), lights.end());
+  own.sky = sky;
+  own.bounces = bounces;
   for (int bounce = 1; bounce <= bounces; ++bounce) {
     const BufferHandle pulled = pullUp(r, outgoing);
-    gathered = gather(r, pulled, direct, outgoing);
+    own.gathered = gather(r, pulled, direct, outgoing);
   }
-  return gathered;
+  return own.gathered;
 }
 
 BufferHandle LightPasses::perSlot(const PassRequest& r, const char* name, uint32_t count) const {
@@ -96,12 +105,20 @@ LightPasses::Sent LightPasses::directLight(const PassRequest& r, std::span<const
   if (glossy || seen)
     pass.read(r.inputs.service<shading_maps::ShadingMapService>().ltcTable(), Access::sampled, "ltc_table",
               "glossy light of rectangles");
+  std::map<std::string, std::string> defines{
+      {"LIGHTS", seen ? "1" : "0"}, {"ENVIRONMENT", sky ? "1" : "0"}, {"MEDIUM", "0"}};
+  if (seen && r.inputs.scene.medium.present()) {
+    const scene::MediumInput medium(r.inputs.handles);
+    defines["MEDIUM"] = "1";
+    medium.define(defines);
+    medium.declare(pass);
+    pass.read(r.inputs.handles.frame, Access::uniformBuffer, "FrameBlock", "the medium");
+  }
   const BufferHandle direct =
       pass.write(sent(r, "direct light"), Access::storageStore, "Direct", "reflected by leaves");
   const BufferHandle outgoing =
       pass.write(sent(r, "outgoing"), Access::storageStore, "Outgoing", "the same, before it is pulled up");
-  const auto kernelHandle = elements_.program(
-      pass, "direct.comp.glsl", {{"LIGHTS", seen ? "1" : "0"}, {"ENVIRONMENT", sky ? "1" : "0"}});
+  const auto kernelHandle = elements_.program(pass, "direct.comp.glsl", std::move(defines));
   pass.execute([this, kernelHandle, glossy, count = lights.size()](frame::PassContext& context) {
     gpu::Program& kernel = context.use(kernelHandle);
     if (glossy && count > 0) elements_.setSpace(kernel);  // no light, no direction

@@ -24,7 +24,8 @@ class LightPasses {
   /// Returns the light of the environment in the leaves' empty bins.
   const Gathered& sky(const PassRequest& r);
   /// Returns the light that arrives over 1 to `bounces` surfaces, from lights and, if `sky`, the environment.
-  Gathered reflected(const PassRequest& r, std::span<const uint32_t> lights, bool sky, int bounces);
+  /// Requests for the same light share it.
+  const Gathered& reflected(const PassRequest& r, std::span<const uint32_t> lights, bool sky, int bounces);
 
  private:
   /// Holds the visibility of some lights at all leaves; requests for the same lights share it.
@@ -32,6 +33,13 @@ class LightPasses {
     std::vector<uint32_t> lights;
     gpu::Buffer indexBuffer;
     SeenLights handles;
+  };
+  /// Holds the light over surfaces that one call of reflected() asked for.
+  struct Reflected {
+    std::vector<uint32_t> lights;
+    bool sky = false;
+    int bounces = 0;
+    Gathered gathered;
   };
   /// Holds two buffers of what leaves send: one to keep, and one to be pulled up.
   using Sent = std::pair<frame::BufferHandle, frame::BufferHandle>;
@@ -67,6 +75,7 @@ class LightPasses {
   const ElementPasses& elements_;
   std::string_view technique_;
   std::deque<Seen> seen_;
+  std::deque<Reflected> reflected_;
   std::deque<ProcessorGather> processorGathers_;  ///< the graph keeps their addresses
   std::optional<Gathered> sky_;
   gpu::Buffer environment_;

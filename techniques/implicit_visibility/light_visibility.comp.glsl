@@ -18,17 +18,18 @@ uniform uint samples;
 uniform float unit;   // metres
 uniform float reach;  // a blocker is nearer than this part of the way, so that lights at a surface are not hidden by it
 
-// Whether the light's point is visible; distance: in metres, huge for distant lights.
-bool clear(uint slot, Light light, vec3 direction, float distance) {
-  uint link = links[(slot - first_leaf) * bin_count + bin_of(to_bins(direction), BINS)];
+// Whether the light's point with this slope is visible.
+bool clear(uint slot, Light light, LightView v, vec3 slope) {
+  uint link = links[(slot - first_leaf) * bin_count + bin_of(to_bins(slope), BINS)];
   if (link == no_link) return true;
   uint element = link & ~link_back;
   ElementGroup g = groups[element / 4u];
-  if (g.object == light.own_instance) return true;  // a light does not hide itself
+  if (light_is_instance(light, g.object)) return true;  // a light does not hide itself
   ElementGroup own = groups[slot / 4u];
   uint k = element % 4u;
   uint i = slot % 4u;
   vec3 offset = vec3(g.x[k], g.y[k], g.z[k]) - vec3(own.x[i], own.y[i], own.z[i]);
+  float distance = light.type == light_directional ? 3.0e38 : length(slope) * v.depth;  // metres
   return length(offset) * unit > reach * distance;
 }
 
@@ -40,7 +41,6 @@ void main() {
   Light light = lights[indices[gl_WorkGroupID.y]];
   LightView v = light_view(light, leaf.position.xyz, leaf.normal.xyz, -1.0);
   if (leaf.used > 0.0 && !v.masked) {
-    bool distant = light.type == light_directional;
     float total = 0.0;
     float hits = 0.0;
     uint count = v.extended ? samples : 1u;
@@ -48,9 +48,13 @@ void main() {
       vec3 slope = v.centre;
       if (v.extended && !light_view_sample(v, r2_sequence(s), slope)) continue;
       total += 1.0;
-      if (clear(slot, light, slope, distant ? 3.0e38 : length(slope) * v.depth)) hits += 1.0;
+      if (clear(slot, light, v, slope)) hits += 1.0;
     }
-    lit = total > 0.0 ? hits / total : 1.0;
+    if (total == 0.0) {
+      total = 1.0;
+      if (clear(slot, light, v, light_view_single_point(v))) hits = 1.0;
+    }
+    lit = hits / total;
   }
   seen[gl_WorkGroupID.y * slots + slot] = lit;
 }

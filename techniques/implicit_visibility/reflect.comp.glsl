@@ -30,7 +30,7 @@ void main() {
     if (brdf_is_lambertian(surface)) {
       sum += surface.diffuse * irradiance[slot].rgb * inverse_pi;
     } else {
-      sum += reflected(row, surface, n, view);
+      sum += reflected(row, surface, n, n, view);
     }
   }
   next[at] = vec4(sum, 0.0);

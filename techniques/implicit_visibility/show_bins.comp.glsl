@@ -22,11 +22,12 @@ void main() {
                                       surface.specular_colour, surface.ior);
   material.alpha = binned_alpha(material.alpha, BINS);
   vec3 n = to_bins(surface.normal);
+  vec3 ng = to_bins(surface.geometric_normal);
   vec3 v = to_bins(-normalize(pixel_ray(pixel)));
   vec3 sum = vec3(0.0);
   for (int k = 0; k < 3; ++k) {
     uint row = a.slots[k] - first_leaf;
-    if (a.weights[k] > 0.0 && row < leaf_count) sum += a.weights[k] * reflected(row, material, n, v);
+    if (a.weights[k] > 0.0 && row < leaf_count) sum += a.weights[k] * reflected(row, material, n, ng, v);
   }
   imageStore(radiance, pixel, imageLoad(radiance, pixel) + vec4(sum, 0.0));
 }

@@ -43,15 +43,9 @@ class ImplicitVisibilityTest : public RenderTest {
   }
 
   static reference::Result truth(render::Renderer& renderer, const scene::Scene& scene) {
-    reference::Request request{.scene = scene,
-                               .pose = renderer.pose(),
-                               .camera = renderer.pose().cameras.at(0),
-                               .width = 96,
-                               .height = 72};
-    request.term = Term::indirect;
-    request.bounces = 1;
-    request.spp = 256;
-    return reference::render(request);
+    reference::Request asked = test::request(renderer, scene, {96, 72}, Term::indirect, 256);
+    asked.bounces = 1;
+    return reference::render(asked);
   }
 
   /// Over the pixels that show an instance.
@@ -126,15 +120,9 @@ TEST_F(ImplicitVisibilityTest, TheProcessorGathersWhatShadersGather) {
 TEST_F(ImplicitVisibilityTest, PixelsFindOutlines) {
   const scene::Scene scene = asset("frog");
   render::Renderer renderer(device(), scene);
-  reference::Request request{.scene = scene,
-                             .pose = renderer.pose(),
-                             .camera = renderer.pose().cameras.at(0),
-                             .width = 96,
-                             .height = 72};
-  request.term = Term::visibility;
-  request.light = 0;
-  request.spp = 256;
-  const Image truth = reference::render(request).image;
+  reference::Request wanted = test::request(renderer, scene, {96, 72}, Term::visibility, 256);
+  wanted.light = 0;
+  const Image truth = reference::render(wanted).image;
   const auto error = [&](const char* outlines, const char* links) {
     render::Settings asked =
         settings(96, 72, Term::visibility,
@@ -248,13 +236,12 @@ TEST_F(ImplicitVisibilityTest, ADoubleSidedLampDoesNotLightItself) {
     test::show(scene, lamp,
                glm::rotate(glm::translate(glm::mat4(1), {0.37f, 1.71f, -0.23f}), 0.4f, {0.6f, 0.3f, 0.8f}));
     render::Renderer renderer(device(), scene);
-    renderer.configure(
+    return picture(
+        renderer,
         settings(48, 36, Term::indirect,
                  {technique("implicit_visibility",
-                            {{"bins", "8"}, {"longest_edge", "0.1"}, {"glossy_bins", glossyBins}})}));
-    renderer.setCamera(scene::lookAt({0, 1, 0.01f}, {0, 0, 0}, 0.8f));
-    renderer.render();
-    return renderer.read();
+                            {{"bins", "8"}, {"longest_edge", "0.1"}, {"glossy_bins", glossyBins}})}),
+        scene::lookAt({0, 1, 0.01f}, {0, 0, 0}, 0.8f));
   };
   for (const char* glossyBins : {"0", "4"})
     EXPECT_EQ(rmse(below(0.5f, glossyBins), below(0, glossyBins)), 0) << glossyBins;

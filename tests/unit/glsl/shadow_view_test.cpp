@@ -195,8 +195,10 @@ TEST(LightView, NothingOfALightIsHigherThanItsHighestPoint) {
       const LightView v = light_view(light, vec3(0.1f, 0, 0.2f), n, -1);
       if (v.masked) continue;
       const vec3 highest = light_view_highest(v);
-      EXPECT_GT(dot(highest, n), 0.f);
-      EXPECT_TRUE(light_view_contains(v, highest, 1e-5f));
+      for (const vec3& point : {highest, light_view_single_point(v)}) {
+        EXPECT_GT(dot(point, n), 0.f);
+        EXPECT_TRUE(light_view_contains(v, point, 1e-5f));
+      }
       for (uint32_t i = 0; i < 1000; ++i)
         EXPECT_LE(dot(light_view_point(v, r2_sequence(i)), n), dot(highest, n) + 1e-5f);
     }

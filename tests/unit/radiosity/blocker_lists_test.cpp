@@ -146,6 +146,22 @@ TEST(BlockerLists, AreEmptyWhereNothingIsInTheWay) {
   EXPECT_TRUE(lists.triangles().empty());
 }
 
+/// Over the disc of a wide sun points on a plane are not even, whatever was listed before.
+TEST(BlockerLists, AreNotMadeForWideSuns) {
+  const BlockedWorld world;
+  BlockerLists lists;
+  const auto unlisted = [&](float diameter) {
+    const std::array bounds{LightBounds::of(sun(diameter))};
+    lists.build(*world.elements, nullptr, bounds, kPlenty);
+    return std::ranges::count(lists.ranges(), BlockerLists::kUnlisted, &BlockerLists::Range::count);
+  };
+  const auto all = static_cast<std::ptrdiff_t>(world.elements->forest().leafSlots());
+  EXPECT_LT(unlisted(0.99f * LightBounds::kWidestDisc), all);
+  EXPECT_FALSE(lists.triangles().empty());
+  EXPECT_EQ(unlisted(1.01f * LightBounds::kWidestDisc), all);
+  EXPECT_TRUE(lists.triangles().empty());
+}
+
 TEST(BlockerLists, KeepToTheirRoomAndLeaveOutFullShadow) {
   const BlockedWorld world;
   const SceneElements& elements = *world.elements;

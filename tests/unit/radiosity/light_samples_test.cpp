@@ -4,6 +4,7 @@
 #include <gtest/gtest.h>
 
 #include <algorithm>
+#include <cmath>
 
 #include "glsl/light/unshadowed_light.glsl"
 #include "tests/support/scene_nodes.h"
@@ -107,6 +108,65 @@ TEST(LightSamplesTest, ASunHasItsIrradianceWhateverItsAngle) {
     EXPECT_NEAR(total(seen).x, 1.6, 1e-3);
     EXPECT_EQ(lightAt(sun, 1, 10).irradiance, glm::vec3(0));
   }
+}
+
+/// The one ray misses the disc of the sun within its square for about a fifth of the seeds.
+TEST(LightSamplesTest, ASunIsNotLostForWantOfRays) {
+  glsl::Light sun{};
+  sun.type = glsl::light_directional;
+  sun.direction = {0, -0.6f, -0.8f};
+  sun.emission = glm::vec3(2);
+  sun.angular_diameter = 0.5f;
+  for (uint32_t seed = 0; seed < 64; ++seed) {
+    LightAtPlace seen, hidden;
+    addLight(sun, {.seed = seed}, Curtain(-10), 1, seen);
+    addLight(sun, {.seed = seed}, Curtain(10), 1, hidden);
+    EXPECT_NEAR(seen.irradiance.x, 1.6, 1e-4) << seed;
+    EXPECT_NEAR(total(seen).x, 1.6, 1e-3) << seed;
+    EXPECT_EQ(hidden.irradiance, glm::vec3(0)) << seed;
+    EXPECT_TRUE(hidden.incident.empty()) << seed;
+  }
+}
+
+/// T_l of places on a floor, whose bounding sphere of radius sqrt(8) m the medium fills: exp(-extinction
+/// times way), from a lamp's centre or, of light from far above, from the sphere on.
+TEST(LightSamplesTest, AMediumTakesOfLightOnItsWay) {
+  scene::Scene scene;
+  test::show(scene,
+             test::quad({0, 0, 0}, {4, 0, 0}, {0, 0, -4}, test::addMaterial(scene, test::lambertian(0.5f))));
+  const scene::Pose pose = scene::evaluate(scene, 0);
+  const auto air = sceneOcclusion(scene, pose);
+  scene.medium.sigmaA = {0.1f, 0.4f, 0};
+  scene.medium.sigmaS = {0, 0.1f, 2};
+  const auto fog = sceneOcclusion(scene, pose);
+  const glm::dvec3 extinction(0.1, 0.5, 2);
+  glsl::Light lamp = rectangle(0.5f), sun{};
+  lamp.position = {0, 1, 0};
+  lamp.direction = {0, -1, 0};
+  lamp.axis_v = {0, 0, -1};
+  sun.type = glsl::light_directional;
+  sun.direction = {0, -1, 0};
+  sun.emission = glm::vec3(2);
+  sun.own_instance = glsl::no_instance;
+  for (const glm::vec3& position : {glm::vec3(0), glm::vec3(1, 0, 0.5f)})
+    for (const glsl::Light& light : {lamp, sun}) {
+      const LitPlace place{.position = position, .normal = {0, 1, 0}, .clearance = 1e-4f};
+      LightAtPlace clear, dim;
+      addLight(light, place, *air, 16, clear);
+      addLight(light, place, *fog, 16, dim);
+      ASSERT_EQ(clear.incident.size(), 1u);
+      ASSERT_EQ(dim.incident.size(), 1u);
+      const double squared = double(glm::dot(position, position));
+      const double way =
+          light.type == glsl::light_directional ? std::sqrt(8 - squared) : std::sqrt(1 + squared);
+      for (int c = 0; c < 3; ++c) {
+        const double left = std::exp(-extinction[c] * way);
+        EXPECT_NEAR(double(dim.irradiance[c]) / double(clear.irradiance[c]), left, 1e-4 * left) << c;
+        EXPECT_NEAR(double(dim.incident[0].irradiance[c]) / double(clear.incident[0].irradiance[c]), left,
+                    1e-4 * left)
+            << c;
+      }
+    }
 }
 
 TEST(LightSamplesTest, AFlatLightDoesNotLightItself) {

@@ -3,6 +3,8 @@
 
 #include <gtest/gtest.h>
 
+#include <algorithm>
+
 #include "core/base/error.h"
 #include "core/scene/metaballs.h"
 #include "tests/support/test_scenes.h"
@@ -110,6 +112,33 @@ TEST(SceneElementsTest, DoNotFitSkinsAndMorphsThatChangeTheirArea) {
   elements.update(larger);
   EXPECT_TRUE(elements.fits(larger));
   EXPECT_FALSE(elements.fits(pose(scaled(glm::vec3(1.2f * 1.2f)), 0.2f))) << "compared with what was made";
+}
+
+/// A pose that was asked for and not taken leaves no trace.
+TEST(SceneElementsTest, FollowThePoseOfTheirUpdate) {
+  scene::Scene scene;
+  scene::Primitive floor = test::floorPrimitive(1, test::addMaterial(scene));
+  floor.morphTargets.push_back({floor.positions, {}, {}, {}});  // weight w: 1 + w times as wide
+  const int mesh = test::addMesh(scene, floor);
+  const auto pose = [&](float weight) {
+    scene::Pose made;
+    test::addInstance(scene, made, mesh);
+    made.instances[0].deformed = 0;
+    made.deformed = {{mesh, 0, {}, {weight}}};
+    return made;
+  };
+  SceneElements elements(scene, pose(0), 10, 1u << 20);
+  const auto widthAfter = [&](float asked, float taken) {
+    EXPECT_TRUE(elements.fits(pose(asked)));
+    elements.update(pose(taken));
+    float most = 0;
+    for (const Leaf& leaf : elements.leaves())
+      if (leaf.used > 0) most = std::max(most, leaf.vertex.x);
+    return most;
+  };
+  EXPECT_NEAR(widthAfter(0.1f, 0.2f), 1.2, 1e-6);
+  EXPECT_NEAR(widthAfter(0.1f, 0.1f), 1.1, 1e-6);
+  EXPECT_NEAR(widthAfter(0.1f, 0), 1, 1e-6);
 }
 
 /// Instances of a pose may stand for elements of their own.
