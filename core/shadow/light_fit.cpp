@@ -9,6 +9,7 @@
 #include "core/shadow/private/window_fit.h"
 #include "glsl/light/light_part.glsl"
 #include "glsl/light/light_view.glsl"
+#include "glsl/light/rectangle_light.glsl"
 #include "glsl/numeric/geometry.glsl"
 
 namespace limn::shadow {
@@ -146,8 +147,7 @@ void appendOrthographic(const glsl::Light& light, const vec3& direction, std::sp
 }
 
 vec3 samplePoint(const glsl::Light& light, const glm::vec2& sample) {
-  const glm::vec2 ab = sample - 0.5f;
-  return light.position + ab.x * light.length_u * light.axis_u + ab.y * light.length_v * light.axis_v;
+  return glsl::rectangle_point(light, sample - 0.5f);
 }
 
 /// The unit direction that a directional light's sample shines along.

@@ -11,7 +11,7 @@
 namespace limn::shadow {
 
 constexpr Parameter patchesParameter() {
-  return integer("patches", 32, {2, 1024}, "micro-patches",
+  return integer("patches", 32, {3, 1024}, "micro-patches",
                  "Micro-patches along each side of a kernel, at most; wider kernels are walked in steps of "
                  "several texels")
       .quality()

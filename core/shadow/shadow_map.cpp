@@ -227,7 +227,7 @@ void ShadowMapService::Implementation::check(const Request& request, size_t laye
   if (bytes > kMemoryLimit)
     throw UsageError(
         fmt::format("shadow maps of {} layers of {} x {} texels take {} MiB, more than the {} MiB that one "
-                    "request may; ask for a smaller shadow_map_size or fewer lights at once",
+                    "request may; ask for smaller maps or fewer lights at once",
                     layers, size, size, bytes >> 20, kMemoryLimit >> 20));
 }
 

@@ -45,6 +45,43 @@ vec2 kernel_depth_bounds(ShadowCursor cursor, ShadowKernel kernel) {
   return BOUNDS_DEPTH(shadow_min_max, texels.xy, texels.zw, int(cursor.layer));
 }
 
+// Extends a kernel to a place, texels.
+void extend_kernel(inout ShadowKernel kernel, vec2 place) {
+  kernel.low = min(kernel.low, place);
+  kernel.high = max(kernel.high, place);
+}
+
+// Extends a kernel that no face has cut to where the view sees the receiver; then its face cuts it, unless the view is the light's
+// only one (`whole`). seen: shadow_kernel()'s. False: nothing of it lies in this view.
+bool extend_to_receiver(ShadowView view, vec3 receiver, bool whole, bool seen, inout ShadowKernel kernel) {
+  vec3 r = shadow_local(view, receiver);
+  bool there = seen || r.z > 0.0 || view.projection != shadow_perspective;
+  // As in shadow_kernel(): what lies beside or behind a perspective view lies far outside its map.
+  if (view.projection == shadow_perspective) r.z = max(r.z, 1e-3 * max(abs(r.x), abs(r.y)));
+  extend_kernel(kernel, float(view.size) * shadow_project_local(view, r).uv);
+  if (whole) return there;
+  kernel.low = max(kernel.low, vec2(0.0));
+  kernel.high = min(kernel.high, vec2(view.size));
+  vec2 extent = kernel.high - kernel.low;
+  kernel.weight = extent.x * extent.y;  // so that texels count alike in all faces
+  return there && extent.x > 0.0 && extent.y > 0.0;
+}
+
+// As shadow_kernel_in_face(). searching: the kernel is to hold those at all lesser gaps, which shrink towards the receiver's own
+// place. Each of them holds that place itself while the light's centre counts; where the centre lies beneath the tangent plane,
+// they lie beside it, and the kernel is extended to it.
+bool kernel_in_face(inout ShadowCursor cursor, VisibilityQuery q, uint face, float gap, float least, bool searching,
+                    out ShadowKernel kernel) {
+#if !ONE_VIEW
+  if (face != cursor.face) cursor = shadow_cursor_at(q, face);
+#endif
+  bool whole = q.maps.faces == shadow_faces_single;
+  bool reaching = searching && map_from_beneath(cursor.view, cursor.in_map);
+  bool seen = shadow_kernel(cursor.view, q.light, q.position, gap, whole || reaching, least, kernel);
+  if (reaching) seen = extend_to_receiver(cursor.view, q.position, whole, seen, kernel);
+  return seen;
+}
+
 // The kernel starts at the near plane and stays there without rounds, as published; each of `rounds` moves it to the nearest depth
 // in it, beyond which nothing can block. Bounds may decide in every kernel but the last one that it moves to.
 BlockerSearch blocker_search(inout ShadowCursor cursor, VisibilityQuery q, int rounds) {
@@ -57,7 +94,7 @@ BlockerSearch blocker_search(inout ShadowCursor cursor, VisibilityQuery q, int r
     bool umbra = true;
     for (uint face = 0u; face < shadow_face_count(q.maps.faces); ++face) {
       ShadowKernel kernel;
-      if (!shadow_kernel_in_face(cursor, q, face, search.gap, least_kernel_width, kernel)) continue;
+      if (!kernel_in_face(cursor, q, face, search.gap, least_kernel_width, true, kernel)) continue;
       vec2 depths = kernel_depth_bounds(cursor, kernel);
       ShadowKernel centres = kernel_centres(cursor, kernel);
       vec2 thresholds = map_threshold_range(cursor.view, cursor.in_map, centres.low, centres.high);

@@ -1,6 +1,7 @@
 // A receiver's kernels in all views of a light, for techniques that answer one view at a time.
 #ifndef LIMN_LIGHT_KERNELS_GLSL
 #define LIMN_LIGHT_KERNELS_GLSL
+#include "glsl/shadow/blocker_search.glsl"
 #include "glsl/shadow/kernel_blockers.glsl"
 
 // The technique's: what blocks in one view. It may widen the kernel to whole texels.
@@ -13,7 +14,7 @@ Blockers blockers_at(inout ShadowCursor cursor, VisibilityQuery q, float gap, fl
   uint face = 0u;
   do {  // the condition comes last: software renderers run a loop's body once more where it comes first
     ShadowKernel kernel;
-    bool seen = shadow_kernel_in_face(cursor, q, face, gap, least, kernel) && wanted;
+    bool seen = kernel_in_face(cursor, q, face, gap, least, use == kernel_search, kernel) && wanted;
     if (seen) {
       KernelBlockers blockers = kernel_blockers(cursor, q, kernel, gap, use);
       add_kernel(sums, kernel, blockers);

@@ -57,6 +57,12 @@ LIMN_FN float map_gap(ShadowView view, MapReceiver receiver, vec2 texel, float d
   return receiver.depth - map_dot(view, receiver.axis, texel, depth);
 }
 
+// Whether the light's centre lies beneath the receiver's tangent plane, raised by the bias. Rays from it then come up through the
+// plane: what blocks lies between the plane and the receiver's depth, below no one depth.
+LIMN_FN bool map_from_beneath(ShadowView view, MapReceiver receiver) {
+  return view.projection == shadow_orthographic ? receiver.plane.w >= 0.0f : receiver.height >= 0.0f;
+}
+
 // Metres of depth at a place, texels (of which a texel's middle is at its number + 1/2): where the tangent plane, raised by the
 // bias, lies there, and where the light's axis has the receiver's depth.
 LIMN_FN vec2 map_limits(ShadowView view, MapReceiver receiver, vec2 place) {
@@ -79,15 +85,17 @@ LIMN_FN vec2 map_limits(ShadowView view, MapReceiver receiver, vec2 place) {
 }
 
 // The stored depth below which a texel at a place blocks the receiver: the lesser of the tangent plane's, raised by the bias,
-// and the receiver's own along the light's axis. In [0, 1]. map_blocks() says the same of a point, but for what little of a
-// light lies above the tangent plane when its centre lies below: there nothing blocks.
+// and the receiver's own along the light's axis. In [0, 1]. map_blocks() says the same of a point, except where
+// map_from_beneath() holds.
 LIMN_FN float map_threshold(ShadowView view, MapReceiver receiver, vec2 place) {
   vec2 limits = map_limits(view, receiver, place);
   return clamp(shadow_normalise(view, min(limits.x, limits.y)), 0.0f, 1.0f);
 }
 
-// Bounds of the thresholds in a box of places. The two planes may slope against each other, so that the lesser of them is
-// greatest inside the box: each has its own range, which its values at the corners give.
+// Bounds of the stored depths below which texels in a box of places block: nearer than the first all of them do, not nearer than
+// the second none does. The two planes may slope against each other, so that the lesser of them is greatest inside the box: each
+// has its own range, which its values at the corners give. Where map_from_beneath() holds, what blocks lies behind the tangent
+// plane, and the other one bounds it alone.
 LIMN_FN vec2 map_threshold_range(ShadowView view, MapReceiver receiver, vec2 low, vec2 high) {
   vec2 a = map_limits(view, receiver, low);
   vec2 b = map_limits(view, receiver, vec2(high.x, low.y));
@@ -95,6 +103,7 @@ LIMN_FN vec2 map_threshold_range(ShadowView view, MapReceiver receiver, vec2 low
   vec2 d = map_limits(view, receiver, high);
   vec2 least = min(min(a, b), min(c, d));
   vec2 most = max(max(a, b), max(c, d));
+  if (map_from_beneath(view, receiver)) most.x = view.far;
   return clamp(vec2(shadow_normalise(view, min(least.x, least.y)), shadow_normalise(view, min(most.x, most.y))),
                vec2(0.0f), vec2(1.0f));
 }

@@ -7,6 +7,7 @@
 // u, u^2, u^3, u^4: all of them fill [-1, 1], so that each word of a table quantises equally well.
 #ifndef LIMN_MOMENT_SHADOW_GLSL
 #define LIMN_MOMENT_SHADOW_GLSL
+#include "glsl/numeric/sampling.glsl"
 #include "glsl/shadow/summed_area_table.glsl"
 LIMN_BEGIN
 
@@ -36,7 +37,7 @@ LIMN_FN vec4 moment_polynomials(float z) {
 LIMN_FN uvec4 moment_texel(float z, uvec2 at, int bits) {
   int scale = moment_scale(bits);
   vec4 t = moment_polynomials(z);
-  uint shift = at.x * 3242174889u + at.y * 2447445413u;
+  uint shift = at.x * r2_step.x + at.y * r2_step.y;
   ivec4 texel;
   for (int i = 0; i < 4; ++i) {
     SAT_PRECISE float scaled = t[i] * float(scale);

@@ -19,20 +19,6 @@ layout(location = 2) out vec4 stored_albedo;
 layout(location = 3) out uint stored_instance;
 #endif
 
-#if MASKED
-// At texture level 0, as in shadow maps.
-void alpha_test() {
-  float alpha = material.base_colour.a;
-#if COLOURS
-  alpha *= surface_colour.a;
-#endif
-  if ((textures & material_has_base_colour_texture) != 0u) {
-    alpha *= textureLod(base_colour_texture, surface_uv, 0.0).a;
-  }
-  if (alpha < material.alpha_cutoff) discard;
-}
-#endif
-
 // Share of light from angle acos(cosine) to the normal that the diffuse part of the BRDF sends back, all directions
 // together (the table's mean of Fresnel's weight; the diffuse part is the same with its directions exchanged).
 vec3 diffuse_albedo(vec3 base, vec2 metal_rough, float cosine) {

@@ -84,5 +84,19 @@ LIMN_FN bool shadow_kernel(ShadowView view, LightView light, vec3 receiver, floa
   return true;
 }
 
+// How near to a rectangular light something may block that lies no nearer than the near plane of its cube or half cube, metres
+// along the light's axis. Each face measures that plane along its own axis: beside the light's axis a ray from the receiver
+// reaches it at some other depth, or not at all. first: the face along the light's axis.
+LIMN_FN float shadow_faces_nearest(ShadowView first, LightView light, vec3 receiver) {
+  vec3 to = abs(shadow_local(first, receiver));
+  vec3 reach = (0.5f * light.depth) *
+               (abs(shadow_view_axes(first, light.side_u)) + abs(shadow_view_axes(first, light.side_v)));
+  // Of the way from the light to the receiver, what rays have gone at least where they reach that plane.
+  vec3 share = max(vec3(first.near) - reach, vec3(0.0f)) / max(to - reach, vec3(1e-20f));
+  // Of what lies yet nearer to the light's plane shadow_kernel() could not say where it ends in a face beside the axis.
+  float least = 4e-3f * max(reach.x, reach.y);
+  return min(first.near, max(light.depth * min(share.x, share.y), least));
+}
+
 LIMN_END
 #endif  // LIMN_SHADOW_KERNEL_GLSL

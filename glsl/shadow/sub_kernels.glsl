@@ -76,14 +76,17 @@ KernelFamily kernel_family(ShadowCursor cursor, VisibilityQuery q) {
   return f;
 }
 
-// The kernel at `gap`. False: nothing of it lies in this view.
-bool family_kernel(KernelFamily f, float gap, out ShadowKernel kernel) {
+// The kernel at `gap`. searching: as in kernel_in_face(). False: nothing of it lies in this view.
+bool family_kernel(KernelFamily f, float gap, bool searching, out ShadowKernel kernel) {
+  bool reaching = searching && f.beneath;
   float scale = kernel_cone_scale(f.cone, gap);
   ShadowKernel scaled = ShadowKernel(f.cone.apex + scale * f.cone.low, f.cone.apex + scale * f.cone.high, 1.0);
   widen_kernel(scaled, least_kernel_width);
+  if (reaching) extend_kernel(scaled, f.cone.apex);
   kernel = scaled;
 #if !SIMILAR_KERNELS
-  bool seen = shadow_kernel(f.view, f.light, f.receiver, gap, f.whole, least_kernel_width, kernel);
+  bool seen = shadow_kernel(f.view, f.light, f.receiver, gap, f.whole || reaching, least_kernel_width, kernel);
+  if (reaching) seen = extend_to_receiver(f.view, f.receiver, f.whole, seen, kernel);
   if (!f.similar) return seen;
   kernel = scaled;
 #endif
@@ -153,7 +156,7 @@ vec2 box_moments(uvec4 s11, uvec4 s01, uvec4 s10, uvec4 s00, uint texels, float 
 float hidden_texels(KernelFamily f, KernelTally tally, vec2 low, vec2 high, float gap) {
   ShadowKernel kernel;
   gap = clamp(gap, least_gap * tally.gap, tally.gap);
-  bool seen = family_kernel(f, gap, kernel);
+  bool seen = family_kernel(f, gap, false, kernel);
   vec2 first = max(tally.low, kernel.low - vec2(edge_blur));
   vec2 last = min(tally.high, kernel.high + vec2(edge_blur));
   vec2 extent = max(last - first, vec2(1e-6));

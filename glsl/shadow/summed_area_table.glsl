@@ -195,7 +195,7 @@ struct SatAxis {
   vec3 weights;
 };
 
-// The kernel is cut at one map size (`size` texels) beyond either edge of the map.
+// The kernel is cut at one map size (`size` texels) beyond either edge of the map; sat_beyond() adds the rest of it.
 LIMN_FN SatAxis sat_axis(float lo, float hi, int size) {
   float limit = float(size);
   float a = clamp(lo, -limit, 2.0f * limit);
@@ -211,6 +211,19 @@ LIMN_FN SatAxis sat_axis(float lo, float hi, int size) {
     axis.weights = vec3(float(first + 1) - a, 1.0f, b - float(last));
   }
   return axis;
+}
+
+// Adds what of the kernel lo..hi lies beyond where sat_axis() cuts it: unoccluded, as all outside the map.
+LIMN_FN SatMoments sat_beyond(SatMoments moments, vec2 lo, vec2 hi, ivec2 size, uint receiver, uint format) {
+  vec2 limit = vec2(size);
+  vec2 whole = hi - lo;
+  vec2 cut = clamp(hi, -limit, 2.0f * limit) - clamp(lo, -limit, 2.0f * limit);
+  SAT_PRECISE float texels = whole.x * whole.y - cut.x * cut.y;
+  float before = float(receiver) - float(sat_scale(format));
+  moments.weight += texels;
+  moments.first += texels * before;
+  moments.second += texels * before * before;
+  return moments;
 }
 
 // Box (i, j) of 3 x 3 from the sums at the 4 x 4 edges, corners[4 * row + column], of which those outside the map are
@@ -262,7 +275,7 @@ vec2 sat_lookup_moments(usampler2DArray table, vec2 lo, vec2 hi, int layer, floa
     }
     above = below;
   }
-  return sat_moments(moments, d, receiver, format);
+  return sat_moments(sat_beyond(moments, lo, hi, size, receiver, format), d, receiver, format);
 }
 #endif
 

@@ -57,7 +57,7 @@ VisibilityQuery visibility_query(ivec2 at, uint maps) {
   q.normal = pixel_geometric_normal(at);
   Light light = lights[q.maps.light];
   q.light = light_view_of_kind(light, kind_of_light(light), q.position, q.normal, light_size);
-  bool itself = light.own_instance != no_instance && pixel_instance(at) == light.own_instance;
+  bool itself = pixel_shows_light(at, light);
   q.masked = depth == 0.0 || itself || q.light.masked;
   return q;
 }
@@ -176,7 +176,8 @@ bool shadow_covers_receiver(ShadowCursor cursor, VisibilityQuery q) {
 }
 
 // From the receiver to the near plane along the light's axis, metres: the gap of the initial kernel as published. The
-// near plane lies that far from the view's origin for directional lights, from the light for all others.
+// near plane lies that far from the view's origin for directional lights, from the light for all others; where the faces of
+// a rectangle share it, what counts is where its rays reach it.
 float shadow_near_gap(ShadowCursor cursor, VisibilityQuery q) {
   if (cursor.view.projection == shadow_orthographic && !q.light.cone) {
     // The map looks along the centre of the distant rectangle, which is not across the rectangle's plane.
@@ -184,7 +185,14 @@ float shadow_near_gap(ShadowCursor cursor, VisibilityQuery q) {
     return max(gap, 0.0) / -dot(cursor.view.axis_z, q.light.centre);
   }
   float depth = q.light.cone ? dot(q.light.axis, q.position - cursor.view.origin) : q.light.depth;
-  return max(depth - cursor.view.near, 0.0);
+  float near = cursor.view.near;
+#if !ONE_VIEW
+  bool faces = q.maps.faces == shadow_faces_hemicube || q.maps.faces == shadow_faces_cube;
+  if (faces && kind_of_light(lights[q.maps.light]) == light_kind_rectangle) {
+    near = shadow_faces_nearest(q.first, q.light, q.position);
+  }
+#endif
+  return max(depth - near, 0.0);
 }
 
 // Techniques that filter boxes go through all views of a light, and weight what they find by ShadowKernel::weight:

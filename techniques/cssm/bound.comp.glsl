@@ -36,6 +36,7 @@ struct Receiver {
   float range;
   int layer;
   int size;         // texels per side of the map
+  bool beneath;     // map_from_beneath()
 };
 
 Receiver receiver_at(ShadowCursor cursor, VisibilityQuery q) {
@@ -60,6 +61,7 @@ Receiver receiver_at(ShadowCursor cursor, VisibilityQuery q) {
   r.range = view.far - view.near;
   r.layer = int(cursor.layer);
   r.size = int(view.size);
+  r.beneath = map_from_beneath(view, cursor.in_map);
   return r;
 }
 
@@ -109,7 +111,7 @@ bool add_part(inout KernelBlockers blockers, ShadowCursor cursor, Receiver r, Fo
   return hidden == 0.0 && nearest < most;
 }
 
-// Adds what texels say of the part low..high, which the horizon cuts and the kernel covers by `weight`.
+// Adds what texels say of the part low..high, which the kernel covers by `weight`.
 void add_quarters(inout KernelBlockers blockers, Receiver r, vec2 low, vec2 high, float weight) {
   vec2 quarter = 0.5 * (high - low);
   for (int i = 0; i < 4; ++i) {
@@ -140,7 +142,7 @@ KernelBlockers kernel_blockers(ShadowCursor cursor, VisibilityQuery q, Receiver 
     low.x = clamp(fourier_part(x, i), 0.0, size);
     high.x = clamp(fourier_part(x, i + 1), 0.0, size);
     float weight = fourier_part_weight(x, i);
-    uint crossed = 0u;  // parts of this column that the horizon cuts, bit by bit
+    uint crossed = 0u;  // parts of this column that texels answer for, bit by bit
     int j = -cut;
     high.y = clamp(fourier_part(y, j), 0.0, size);
 #if FOURIER_SAT
@@ -158,8 +160,9 @@ KernelBlockers kernel_blockers(ShadowCursor cursor, VisibilityQuery q, Receiver 
 #else
       FourierMeans means = fourier_means(low, high, ivec2(r.size), r.layer);
 #endif
-      bool beyond = add_part(blockers, cursor, r, means, low, high, texels * weight * fourier_part_weight(y, j), exponent, last);
-      crossed |= beyond && !q.light.whole ? 1u << uint(j + cut) : 0u;
+      float counted = r.beneath ? 0.0 : texels * weight * fourier_part_weight(y, j);
+      bool beyond = add_part(blockers, cursor, r, means, low, high, counted, exponent, last);
+      crossed |= r.beneath || (beyond && !q.light.whole) ? 1u << uint(j + cut) : 0u;
     } while (++j < y.parts + cut);
     for (; crossed != 0u; crossed &= crossed - 1u) {
       int part = findLSB(crossed) - cut;
@@ -178,7 +181,9 @@ float light_visibility(ShadowCursor cursor, VisibilityQuery q, ivec2 pixel) {
   float gap = search.gap;
   int pass = 0;
   do {
-    KernelBlockers found = kernel_blockers(cursor, q, r, rays_box(r.rays, gap, least_kernel_width), gap, false);
+    ShadowKernel kernel = rays_box(r.rays, gap, least_kernel_width);
+    if (r.beneath) extend_kernel(kernel, shadow_place(cursor, q.position));
+    KernelBlockers found = kernel_blockers(cursor, q, r, kernel, gap, false);
     if (found.texels <= 0.0) return 1.0;
     gap = clamp(found.gap / found.texels, 0.0, gap);
   } while (++pass < blocker_passes);

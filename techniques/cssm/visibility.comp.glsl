@@ -29,6 +29,7 @@ struct KernelView {
   int layer;
   float size;        // texels per side of the map
   float sharpening;  // exponent of V, CONTACT 1
+  bool beneath;      // map_from_beneath(): only texels tell what blocks
 };
 
 KernelView kernel_view(ShadowCursor cursor, VisibilityQuery q, float gap) {
@@ -39,6 +40,7 @@ KernelView kernel_view(ShadowCursor cursor, VisibilityQuery q, float gap) {
   k.range = fourier_ranges[cursor.layer];
   k.layer = int(cursor.layer);
   k.size = float(cursor.view.size);
+  k.beneath = map_from_beneath(cursor.view, cursor.in_map);
 #if CONTACT == 1
   // From the blockers to the receiver along the map's depth.
   float distance = shadow_normalise(cursor.view, gap) - shadow_normalise(cursor.view, 0.0);
@@ -115,7 +117,7 @@ bool add_part(inout KernelBlockers blockers, KernelView k, PartDepths part, Four
   return hidden == 0.0 && part.beyond;
 }
 
-// Adds what texels say of the part low..high, which the horizon cuts and the kernel covers by `weight`.
+// Adds what texels say of the part low..high, which the kernel covers by `weight`.
 void add_quarters(inout KernelBlockers blockers, ShadowCursor cursor, vec2 low, vec2 high, float weight) {
   for (int i = 0; i < 4; ++i) {
     PartQuarter part = part_quarter(cursor, low, high, i);
@@ -142,7 +144,7 @@ KernelBlockers kernel_blockers(ShadowCursor cursor, VisibilityQuery q, inout Sha
     low.x = clamp(fourier_part(x, i), 0.0, k.size);
     high.x = clamp(fourier_part(x, i + 1), 0.0, k.size);
     float weight = fourier_part_weight(x, i);
-    // Parts of this column that the horizon cuts, bit by bit: few pixels need texels, so they take them together.
+    // Parts of this column that texels answer for, bit by bit: few pixels need texels, so they take them together.
     uint crossed = 0u;
     int j = -cut;
     high.y = clamp(fourier_part(y, j), 0.0, k.size);
@@ -161,9 +163,9 @@ KernelBlockers kernel_blockers(ShadowCursor cursor, VisibilityQuery q, inout Sha
 #else
       FourierMeans means = fourier_means(low, high, size, k.layer);
 #endif
-      bool beyond = add_part(blockers, k, part_depths(cursor, k, low, high), means, 0.5 * (low + high),
-                             texels * weight * fourier_part_weight(y, j), use);
-      crossed |= beyond && !q.light.whole ? 1u << uint(j + cut) : 0u;
+      float counted = k.beneath ? 0.0 : texels * weight * fourier_part_weight(y, j);
+      bool beyond = add_part(blockers, k, part_depths(cursor, k, low, high), means, 0.5 * (low + high), counted, use);
+      crossed |= k.beneath || (beyond && !q.light.whole) ? 1u << uint(j + cut) : 0u;
     } while (++j < y.parts + cut);
     for (; crossed != 0u; crossed &= crossed - 1u) {
       int part = findLSB(crossed) - cut;

@@ -19,6 +19,7 @@ uniform float search_blur;  // texels
 uniform float least_gap;
 
 const float least_filter_width = 1.0;  // texels
+const float least_search_blur = 0.5;   // texels
 const float rest = 1.0 / 256.0;        // what rounding and bias leave of nothing and of everything
 
 // One kernel of a receiver.
@@ -28,7 +29,9 @@ struct Kernel {
   float receiver;  // its depth, metres
   float gap;
   bool search;
-  bool whole;  // the light above the tangent plane
+  bool whole;    // the light above the tangent plane
+  bool beneath;  // map_from_beneath()
+  vec2 place;    // the receiver's own in the map, texels
   vec2 low;
   vec2 high;
 };
@@ -38,8 +41,9 @@ void add_blockers(inout KernelBlockers blockers, Kernel k, vec2 low, vec2 high, 
   float own_gap = clamp(k.receiver - depth, least_gap * k.gap, k.gap);
   if (k.search) {
     ShadowKernel own = rays_box(k.rays, own_gap, least_kernel_width);
-    low = max(low, own.low - search_blur);
-    high = min(high, own.high + search_blur);
+    float blur = max(search_blur, least_search_blur);
+    low = max(low, own.low - blur);
+    high = min(high, own.high + blur);
   }
   vec2 inside = max(high - low, vec2(0.0));
   float texels = share * inside.x * inside.y;
@@ -60,7 +64,7 @@ MomentBlockers cell_blockers(ShadowCursor cursor, Kernel k, vec2 low, vec2 high,
   float change = 0.5 * dot(abs(k.test.plane.xy), high - low);
   float d = map_test_threshold(k.test, slope - change);
   vec2 depths = kernel_depth_bounds(cursor, ShadowKernel(low, high, 1.0));
-  beyond = depths.x < map_test_threshold(k.test, slope + change);
+  beyond = depths.x < (k.beneath ? k.test.nearer : map_test_threshold(k.test, slope + change));
   if (d <= depths.x) return MomentBlockers(0.0, d);
   if (depths.y < d) return MomentBlockers(1.0, 0.5 * (depths.x + depths.y));
   vec4 t = moment_lookup(moment_table, low, high, int(cursor.layer), moment_bits);
@@ -97,7 +101,7 @@ KernelBlockers cells_blockers(ShadowCursor cursor, Kernel k) {
       if (any(lessThanEqual(high, low))) continue;
       bool beyond;
       MomentBlockers found = cell_blockers(cursor, k, low, high, beyond);
-      bool crossed = beyond && found.share < rest && !k.whole;
+      bool crossed = beyond && found.share < rest && (!k.whole || k.beneath);
       cut |= crossed ? 1u << uint(i - first) : 0u;
       if (found.share > 0.0 && !crossed)
         add_blockers(blockers, k, low, high, found.share, shadow_metres(cursor.view, found.depth));
@@ -130,6 +134,7 @@ KernelBlockers texel_blockers(ShadowCursor cursor, Kernel k) {
 // What blocks in the kernel at `gap`.
 Blockers blockers_at(ShadowCursor cursor, Kernel k, float gap) {
   ShadowKernel box = rays_box(k.rays, gap, k.search ? least_kernel_width : least_filter_width);
+  if (k.search && k.beneath) extend_kernel(box, k.place);
   k.gap = gap;
   k.low = k.search ? floor(box.low) : box.low;
   k.high = k.search ? max(ceil(box.high), k.low + 1.0) : box.high;
@@ -156,6 +161,8 @@ float light_visibility(ShadowCursor cursor, VisibilityQuery q, ivec2 pixel) {
   k.rays = box_rays(cursor.view, map_kernel_across(cursor.view, light_view_part(q.light), q.position));
   k.receiver = cursor.in_map.depth;
   k.whole = q.light.whole;
+  k.beneath = map_from_beneath(cursor.view, cursor.in_map);
+  k.place = shadow_place(cursor, q.position);
   k.search = true;
   Blockers found = blockers_at(cursor, k, search.gap);
   if (found.texels < 0.5) return 1.0;

@@ -25,6 +25,9 @@ uniform float least_gap;
 // A penumbra kernel within a texel would make the texels' edges visible.
 const float least_filter_width = 1.0;
 
+// The least of search_blur, so that the cone to a narrow light is a texel wide: what fills it counts as found.
+const float least_search_blur = 0.5;
+
 // What rounding and bias leave of nothing and of everything.
 const float rest = 1.0 / 256.0;
 
@@ -46,14 +49,15 @@ float texels_in_cone(ShadowCursor cursor, VisibilityQuery q, vec2 low, vec2 high
   ShadowKernel own;
   bool whole = q.maps.faces == shadow_faces_single;
   if (!shadow_kernel(cursor.view, q.light, q.position, own_gap, whole, least_kernel_width, own)) return 0.0;
-  vec2 inside = max(min(high, own.high + search_blur) - max(low, own.low - search_blur), vec2(0.0));
+  float blur = max(search_blur, least_search_blur);
+  vec2 inside = max(min(high, own.high + blur) - max(low, own.low - blur), vec2(0.0));
   return inside.x * inside.y;
 }
 
 // Adds what lies in low..high of the kernel at `gap`, by `share`, `depth` metres from the light. A search kernel is so wide
 // that much of what is in it lies beside the cone to the light; one at the blockers' distance is filtered as published.
-void add_blockers(inout KernelBlockers blockers, ShadowCursor cursor, VisibilityQuery q, ShadowKernel kernel, float gap,
-                  int use, vec2 low, vec2 high, float share, float depth) {
+void add_blockers(inout KernelBlockers blockers, ShadowCursor cursor, VisibilityQuery q, float gap, int use, vec2 low,
+                  vec2 high, float share, float depth) {
   vec2 middle = 0.5 * (low + high) - 0.5;
   float own_gap = clamp(map_gap(cursor.view, cursor.in_map, middle, depth), least_gap * gap, gap);
   float texels = share * (use == kernel_search ? texels_in_cone(cursor, q, low, high, own_gap)
@@ -63,12 +67,11 @@ void add_blockers(inout KernelBlockers blockers, ShadowCursor cursor, Visibility
 }
 
 // Adds what texels say of a cell that the horizon cuts.
-void add_quarters(inout KernelBlockers blockers, ShadowCursor cursor, VisibilityQuery q, ShadowKernel kernel, float gap,
-                  int use, ShadowKernel cell) {
+void add_quarters(inout KernelBlockers blockers, ShadowCursor cursor, VisibilityQuery q, float gap, int use,
+                  ShadowKernel cell) {
   for (int i = 0; i < 4; ++i) {
     PartQuarter part = part_quarter(cursor, cell.low, cell.high, i);
-    if (part.tap.blocked)
-      add_blockers(blockers, cursor, q, kernel, gap, use, part.low, part.high, 1.0, part.tap.depth);
+    if (part.tap.blocked) add_blockers(blockers, cursor, q, gap, use, part.low, part.high, 1.0, part.tap.depth);
   }
 }
 
@@ -91,6 +94,8 @@ KernelBlockers cells_blockers(ShadowCursor cursor, VisibilityQuery q, ShadowKern
   // Rounding moves an edge by half a texel.
   ivec2 exact = ivec2(ceil((b - a) / float(moment_largest_side(moment_bits) - 1)));
   ivec2 parts = max(exact, ivec2(cells));
+  // From beneath the tangent plane no threshold parts what blocks from the rest: each cell counts as cut.
+  bool horizon = !q.light.whole || map_from_beneath(cursor.view, cursor.in_map);
   KernelBlockers blockers = KernelBlockers(0.0, 0.0);
   int count = parts.x * parts.y;
   int i = 0;
@@ -103,14 +108,14 @@ KernelBlockers cells_blockers(ShadowCursor cursor, VisibilityQuery q, ShadowKern
       if (any(lessThanEqual(cell.high, cell.low))) continue;
       bool beyond;
       MomentBlockers found = cell_blockers(cursor, cell, beyond);
-      bool crossed = beyond && found.share < rest && !q.light.whole;
+      bool crossed = beyond && found.share < rest && horizon;
       cut |= crossed ? 1u << uint(i - first) : 0u;
       if (found.share > 0.0 && !crossed)
-        add_blockers(blockers, cursor, q, kernel, gap, use, cell.low, cell.high, found.share,
+        add_blockers(blockers, cursor, q, gap, use, cell.low, cell.high, found.share,
                      shadow_metres(cursor.view, found.depth));
     }
     for (; cut != 0u; cut &= cut - 1u)
-      add_quarters(blockers, cursor, q, kernel, gap, use, kernel_cell(a, b, parts, first + findLSB(cut)));
+      add_quarters(blockers, cursor, q, gap, use, kernel_cell(a, b, parts, first + findLSB(cut)));
   } while (i < count);
   return blockers;
 }
@@ -124,7 +129,7 @@ KernelBlockers texel_blockers(ShadowCursor cursor, VisibilityQuery q, ShadowKern
     for (int x = first.x; x <= last.x; ++x) {
       ShadowTap tap = shadow_texel(cursor, ivec2(x, y));
       if (!tap.blocked) continue;
-      add_blockers(blockers, cursor, q, kernel, gap, kernel_filter, max(vec2(x, y), kernel.low),
+      add_blockers(blockers, cursor, q, gap, kernel_filter, max(vec2(x, y), kernel.low),
                    min(vec2(x, y) + 1.0, kernel.high), 1.0, tap.depth);
     }
   }

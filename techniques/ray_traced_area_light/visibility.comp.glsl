@@ -70,7 +70,7 @@ void main() {
   Light light = lights[light_indices[at.z]];
   float v = 1.0;
   float depth = pixel_depth(at.xy);
-  bool itself = light.own_instance != no_instance && pixel_instance(at.xy) == light.own_instance;
+  bool itself = pixel_shows_light(at.xy, light);
   if (depth > 0.0 && !itself) {
     vec3 position = pixel_position(at.xy, depth);
     vec3 normal = pixel_geometric_normal(at.xy);

@@ -1,5 +1,7 @@
 // Area lights as many point samples, each with a shadow map of its own (Brotman and Badler 1984; Haeberli and
 // Akeley 1990): converges to the truth, and is what the soft-shadow techniques are compared with on the GPU.
+#include <algorithm>
+
 #include "core/gpu_scene/gpu_medium.h"
 #include "core/gpu_scene/light_textures.h"
 #include "core/shadow/sample_batches.h"
@@ -48,9 +50,12 @@ class SampledAreaLight : public Technique {
     // Faces are chosen for all samples: those at a light's edge may need more than its centre does.
     const shadow::ShadowMapDesc all = mapsOf(inputs.parameters, 0, samples);
     shadow::SampleLayers layers{.size = all.size};
+    const auto dark = [&](uint32_t light) { return inputs.pose.lights[light].emission == glm::vec3(0); };
+    const bool allDark = std::ranges::all_of(lights, dark);
     for (const uint32_t light : lights) {
-      // A light that emits nothing is here only to show what leaving it out is worth: the picture must stay.
-      if (inputs.pose.lights[light].emission == glm::vec3(0)) continue;
+      // Beside others a light that emits nothing is here only to show what leaving it out is worth: the
+      // picture must stay.
+      if (dark(light) && !allDark) continue;
       const int taken = inputs.service<shadow::ShadowMapService>().layersOf(light, all);
       if (glsl::light_has_extent(inputs.pose.lights[light]))
         layers.each += taken / samples;
@@ -77,9 +82,9 @@ class SampledAreaLight : public Technique {
                                             frame::TextureHandle target, const TermRequest& request,
                                             const Batch& batch) {
     shadow::VisibilityPass pass = commonPass(inputs, request.lights, batch);
-    pass.accumulate = batch.first > 0;
-    pass.program = {.files = {"techniques/sampled_area_light/visibility.comp.glsl"},
-                    .defines = {{"ACCUMULATE", pass.accumulate ? "1" : "0"}}};
+    pass.accumulate = !batch.isFirst();
+    pass.program.files = {"techniques/sampled_area_light/visibility.comp.glsl"};
+    batch.defineOrder(pass.program.defines);
     return shadow::addVisibilityPass(graph, inputs, target, std::move(pass));
   }
 

@@ -3,7 +3,7 @@
 // which is a rectangle.
 //
 // PATTERN, SEARCH: see glsl/shadow/sample_taps.glsl. TABLE_FORMAT: sat_format.
-#include "glsl/shadow/sample_taps.glsl"
+#include "glsl/shadow/filter_taps.glsl"
 #include "glsl/shadow/summed_area_table.glsl"
 #include "glsl/shadow/visibility_main.glsl"
 
@@ -46,15 +46,18 @@ vec2 kernel_moments(vec2 low, vec2 high, int layer, float d) {
   moments.weight += outside;
   moments.first += outside * beyond;
   moments.second += outside * beyond * beyond;
-  return sat_moments(moments, d, receiver, table_format);
+  return sat_moments(sat_beyond(moments, low, high, size, receiver, table_format), d, receiver, table_format);
 }
 
 float light_visibility(ShadowCursor cursor, VisibilityQuery q, ivec2 pixel) {
   LightView part = light_view_part(q.light);
   MapKernel rays = map_kernel_across(cursor.view, part, q.position);
   MapTest test = map_test(cursor);
-  float gap = mean_gap(cursor, q, test, rays, light_view_rise(part), pixel_noise(uint(pixel.x), uint(pixel.y), 0u));
+  vec3 rises = light_view_rise(part);
+  float gap = mean_gap(cursor, q, test, rays, rises, pixel_noise(uint(pixel.x), uint(pixel.y), 0u));
   if (gap <= 0.0) return 1.0;
+  if (map_from_beneath(cursor.view, cursor.in_map))
+    return taps_lit(cursor, test, rays, rises, gap, blocker_samples, pixel_noise(uint(pixel.x), uint(pixel.y), 1u).xy);
   ShadowKernel kernel = rays_box(box_rays(cursor.view, rays), gap, least_filter_width);
   vec2 centre = 0.5 * (kernel.low + kernel.high);
   vec2 reach = 0.5 * (kernel.high - kernel.low);

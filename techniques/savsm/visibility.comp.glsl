@@ -2,7 +2,7 @@
 // share of light from Chebyshev's inequality over the whole penumbra kernel.
 //
 // PATTERN, SEARCH: see glsl/shadow/blocker_samples.glsl. TABLE_FORMAT: sat_format.
-#include "glsl/shadow/blocker_samples.glsl"
+#include "glsl/shadow/filter_samples.glsl"
 #include "glsl/shadow/summed_area_table.glsl"
 #include "glsl/shadow/visibility_main.glsl"
 
@@ -25,6 +25,9 @@ float kernel_light(ShadowCursor cursor, ShadowKernel kernel) {
 float light_visibility(ShadowCursor cursor, VisibilityQuery q, ivec2 pixel) {
   float gap = blocker_gap(cursor, q, pixel_noise(uint(pixel.x), uint(pixel.y), 0u));
   if (gap <= 0.0) return 1.0;
+  // From beneath the tangent plane no one depth parts what blocks from the rest, as Chebyshev's inequality asks: texels tell.
+  if (map_from_beneath(cursor.view, cursor.in_map))
+    return samples_lit(cursor, q, gap, blocker_samples, pixel_noise(uint(pixel.x), uint(pixel.y), 1u).xy);
   float lit = 0.0;
   float weights = 0.0;
   uint face = 0u;

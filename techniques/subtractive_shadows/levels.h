@@ -39,12 +39,13 @@ struct Fade {
   float shareOfMore = 0;
 };
 
-/// Returns what a frame at `position` on the way to level `target` shows. On the way `more` is the level
-/// above even where none of it is shown yet.
+/// Returns what a frame at `position` on the way to level `target` shows. On the way these are the level that
+/// is left, or was reached, and the one that is next, even where the picture is that of one of them.
 inline Fade fadeAt(const std::vector<Level>& levels, double position, int target) {
-  const auto lower = static_cast<size_t>(position);
+  const double below = target < position ? std::ceil(position) - 1 : std::floor(position);
+  const auto lower = static_cast<size_t>(below);
   const size_t upper = position == target ? lower : std::min(lower + 1, levels.size() - 1);
-  return {levels[lower], levels[upper], static_cast<float>(position - static_cast<double>(lower))};
+  return {levels[lower], levels[upper], static_cast<float>(position - below)};
 }
 
 }  // namespace limn::subtractive_shadows

@@ -92,11 +92,15 @@ ShadowValues shadow_values(SampledPixel p, SampleSums sums) {
 }
 #endif
 
-// Blocks share what is hidden of diffuse light without the surface's colour, which a channel of 0 would not tell them: there the
-// surface has next to none instead.
-void keep_diffuse_part(inout SampledPixel p) {
+// Blocks share what is hidden of a part, or seen, without the surface's colour, which a channel of 0 would not tell them: there the
+// surface has next to none instead. By ratio a lobe without light has the diffuse part's share, and models keep their own lobes.
+void keep_parts(inout SampledPixel p) {
   const vec3 least = vec3(1e-6);
   p.material.brdf.diffuse = max(p.material.brdf.diffuse, least);
+#if DEMODULATE && !COMBINE_BY_RATIO
+  p.material.brdf.f0 = max(p.material.brdf.f0, least);
+  p.material.brdf.f90 = max(p.material.brdf.f90, least.x);
+#endif
 #if MATERIAL_MODELS
   p.material.model.kd = max(p.material.model.kd, least);
 #endif
@@ -110,7 +114,7 @@ void main() {
   if (depth == 0.0) return;
   SampledPixel p = sampled_pixel(pixel, depth);
   if ((p.surface.flags & gbuffer_flag_specular) != 0u) return;
-  if (BLOCK_SIDE > 1) keep_diffuse_part(p);
+  if (BLOCK_SIDE > 1) keep_parts(p);
   SampleSums here = no_samples();
   ShadowValues shadows = ShadowValues(ReflectedParts(vec3(0.0), vec3(0.0)), 0.0);
   int first = 0;

@@ -192,7 +192,7 @@ class SubtractiveShadows : public Technique {
     samples_ = p.choice("sampling") == regions
                    ? shadow::EnvironmentSamples(device, inputs.scene.environment, p.real("region_threshold"))
                    : shadow::EnvironmentSamples(device, environment, count);
-    if (p.choice("unshadowed") == lights)
+    if (p.choice("unshadowed") == lights && p.choice("combine") != add)
       unshadowed_ = shadow::EnvironmentSamples(device, environment,
                                                p.integer("lights") * p.integer("unshadowed_factor"));
   }
@@ -202,9 +202,9 @@ class SubtractiveShadows : public Technique {
   Unshadowed findUnshadowed(frame::FrameGraph& graph, const TechniqueInputs& inputs) {
     const ParameterValues& p = inputs.parameters;
     const auto asked = static_cast<Unshadowed>(p.choice("unshadowed"));
+    if (p.choice("combine") == add) return prefiltered;
     if (asked == lights) return lights;
-    if ((inputs.handles.modelKinds & 1u << glsl::model_entry) != 0 || p.choice("combine") == add)
-      return prefiltered;
+    if ((inputs.handles.modelKinds & 1u << glsl::model_entry) != 0) return prefiltered;
     if (asked == cache && !cache_.add(graph, inputs, info.name, p.integer("brdf_samples")))
       return prefiltered;
     return asked;

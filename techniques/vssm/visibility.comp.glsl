@@ -21,9 +21,9 @@ uniform float contact_texels;
 
 // Adds what blocks in one view.
 void add_blockers(inout BlockerSums sums, KernelFamily f, float gap, vec2 depths, int use, bool wanted) {
-  ShadowKernel kernel;
-  bool seen = family_kernel(f, gap, kernel) && wanted;
   bool blockers = use == kernel_search;
+  ShadowKernel kernel;
+  bool seen = family_kernel(f, gap, blockers, kernel) && wanted;
   KernelTally tally = KernelTally(gap, kernel.low, kernel.high, 0.0, 0.0, vec4(0.0));
   if (blockers) {
     tally.low = floor(kernel.low);
@@ -91,7 +91,7 @@ Search search_kernel(inout ShadowCursor cursor, VisibilityQuery q, inout KernelF
     float widest = 0.0;
     ShadowKernel kernel;
 #if SIMILAR_KERNELS
-    family_kernel(f, search.gap, kernel);
+    family_kernel(f, search.gap, true, kernel);
     KernelBounds bounds = family_bounds(f, cursor, kernel);
     search.lit = bounds.lit;
     search.umbra = bounds.umbra;
@@ -104,7 +104,7 @@ Search search_kernel(inout ShadowCursor cursor, VisibilityQuery q, inout KernelF
         cursor = shadow_cursor_at(q, face);
         f = kernel_family(cursor, q);
       }
-      bool seen = family_kernel(f, search.gap, kernel);
+      bool seen = family_kernel(f, search.gap, true, kernel);
       KernelBounds bounds = family_bounds(f, cursor, kernel);
       search.lit = search.lit && (bounds.lit || !seen);
       search.umbra = search.umbra && (bounds.umbra || !seen);
@@ -146,7 +146,7 @@ float contact_visibility(ShadowCursor cursor, VisibilityQuery q, float gap, vec2
 // Whether the kernel at `gap` is too narrow for the table.
 bool contact(KernelFamily f, float gap) {
   ShadowKernel kernel;
-  bool seen = family_kernel(f, gap, kernel);
+  bool seen = family_kernel(f, gap, false, kernel);
   return seen && max(kernel.high.x - kernel.low.x, kernel.high.y - kernel.low.y) < contact_texels;
 }
 

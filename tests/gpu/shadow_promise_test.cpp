@@ -179,6 +179,38 @@ TEST_F(ShadowPromiseTest, BatchesOfSamplesAddUp) {
   }
 }
 
+/// 100 batches of one map each. Shares of 1/100 that were added up as 16 bits round them, 655 / 65535, would
+/// be 0.05 % less than the whole.
+TEST_F(ShadowPromiseTest, BatchesOfSamplesCountExactly) {
+  const BallScene s;
+  for (const bool ofBound : {false, true}) {
+    bound = ofBound;
+    const auto draw = [&](const char* memory) {
+      return visibility("sampled_area_light",
+                        {{"samples", "100"}, {"shadow_map_size", "400"}, {"memory", memory}}, s.scene, s.pose,
+                        s.camera, {3});
+    };
+    const Answer whole = draw("256"), batches = draw("1");
+    EXPECT_EQ(whole.passes.size(), 1u);
+    EXPECT_EQ(batches.passes.size(), 100u);
+    EXPECT_EQ(std::ranges::max(batches.lights[0]), 1);
+    EXPECT_EQ(batches.lights[0], whole.lights[0]);
+  }
+}
+
+/// A light that emits nothing has its maps in batches where no other shines.
+TEST_F(ShadowPromiseTest, DarkLightsTakeNoMoreMemoryThanAskedFor) {
+  BallScene s;
+  s.pose.lights[3].emission = vec3(0);
+  for (const auto& [lights, batches] :
+       {std::pair(std::vector<uint32_t>{3}, 8u), {std::vector<uint32_t>{3, 4}, 8u}}) {
+    const Answer v =
+        visibility("sampled_area_light", {{"samples", "8"}, {"shadow_map_size", "512"}, {"memory", "1"}},
+                   s.scene, s.pose, s.camera, lights);
+    EXPECT_EQ(v.passes.size(), batches) << lights.size() << " lights";
+  }
+}
+
 TEST_F(ShadowPromiseTest, OneSampleIsAHardShadow) {
   const BallScene s;
   const Answer hard = visibility("hard_shadow_map", {{"shadow_map_size", "256"}}, s.scene, s.pose, s.camera);

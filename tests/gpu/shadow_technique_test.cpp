@@ -209,5 +209,48 @@ TEST_F(ShadowTechniqueTest, PenumbraKernelsWithinATexelAreSharedByTheFacesOfACub
   }
 }
 
+/// A square lamp 1 m above a wide floor and a panel half way up beside it, which a face beside the light's
+/// axis shows: along that axis it is nearer to the lamp than the near plane, which the floor below the lamp
+/// gives all faces. From x the edge at 2.6 m is seen at 5.2 m - x on the lamp. A hard edge in the middle errs
+/// by 1 / sqrt(12) = 0.29 over that penumbra. The map shows the panel's edge to within half a texel, 0.045 of
+/// V there, patches of two texels to within one, and a box of the map stands for the kernel, which moves V by
+/// 0.02 at most.
+TEST_F(ShadowTechniqueTest, PanelsBesideALampHaveSoftShadows) {
+  constexpr float lamp = 0.6f, edge = 2.6f;
+  scene::Scene scene;
+  scene::Pose pose;
+  addMesh(scene, floorPrimitive(10, addMaterial(scene)));
+  addMesh(scene, floorPrimitive(1, 0));
+  addInstance(scene, pose, 0);
+  addInstance(scene, pose, 1, at(edge - 0.3f, 0.5f, 0) * glm::scale(glm::mat4(1), {0.3f, 1, 3}));
+  addLight(pose, rectangleLight({0, 1, 0}, {0, -1, 0}, lamp, lamp));
+  const auto camera = scene::lookAt({6.4f, 1.1f, 0}, {5.2f, 0, 0}, 0.6f);
+  for (const TechniquePlugin* plugin : techniques()) {
+    const std::string name = plugin->info->name;
+    if (name != "pcss" && name != "vssm" && name != "backprojection" && name != "bitmask_soft_shadows")
+      continue;
+    std::map<std::string, std::string> settings{{"shadow_map_size", "1024"}};
+    for (const auto& [parameter, value] :
+         {std::pair("views", "1"), {"patches", "256"}, {"sample_points", "256"}}) {
+      if (has(*plugin, parameter)) settings[parameter] = value;
+    }
+    const Answer v = visibility(name, settings, scene, pose, camera);
+    double squares = 0;
+    int penumbra = 0;
+    for (int y = 0; y < side; ++y) {
+      for (int x = 0; x < side; ++x) {
+        const vec3 p = positionOf(v, camera, pose.bounds, x, y);
+        const float exact = (p.x - (2 * edge - 0.5f * lamp)) / lamp;
+        if (v.instance[static_cast<size_t>(y * side + x)] != 0 || exact < 0 || exact > 1) continue;
+        ++penumbra;
+        squares += std::pow(double{v.at(0, x, y)} - exact, 2);
+      }
+    }
+    EXPECT_EQ(v.uncovered, 0u) << name;
+    EXPECT_GT(penumbra, 3000) << name;
+    EXPECT_LT(std::sqrt(squares / penumbra), 0.14) << name;
+  }
+}
+
 }  // namespace
 }  // namespace limn

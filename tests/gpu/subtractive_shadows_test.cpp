@@ -252,6 +252,32 @@ TEST_F(SubtractiveShadowsTest, BlackSurfacesLeaveTheirNeighboursLightAlone) {
   for (int x = 17; x < 32; ++x) EXPECT_NEAR(picture.at(x, 12, 0), far, 1e-4f) << x;
 }
 
+/// Half a floor without a lobe, on the side of -x under a roof, and half a rough metal: its pixels have what
+/// they have where all of the floor is metal, whose blocks differ by a colour of 1e-6 instead of 1 alone.
+TEST_F(SubtractiveShadowsTest, SurfacesWithoutLobesTellThoseBesideThemOfShadows) {
+  scene::Scene metallic = floor();
+  metallic.materials[0] = metal(glm::vec4(1), 0.8f);
+  scene::Node roof;
+  roof.mesh = 0;
+  roof.transform.translation = {-30, 6, 0};
+  roof.transform.scale = vec3(0.6f);
+  metallic.nodes.push_back(roof);
+  scene::Material plain = lambertian(glm::vec4(1));
+  plain.roughness = metallic.materials[0].roughness;
+  const scene::Scene whole = lit(metallic, uniform(1), 0), half = lit(halved(metallic, plain), uniform(1), 0);
+  const auto shadowed = [&](const scene::Scene& scene, const char* combine) {
+    render::Renderer renderer(device(), scene);
+    return direct(renderer, 32, 24, {shadows({{"combine", combine}, {"block", "4"}, {"lights", "64"}})});
+  };
+  for (const char* combine : {"subtract", "add"}) {
+    const Image expected = shadowed(whole, combine), picture = shadowed(half, combine);
+    for (int x = 17; x < 32; ++x) {
+      EXPECT_GT(expected.at(x, 12, 0), 0.05f) << combine << ' ' << x;
+      EXPECT_NEAR(picture.at(x, 12, 0), expected.at(x, 12, 0), 1e-3f) << combine << ' ' << x;
+    }
+  }
+}
+
 /// Half a floor of coats, on the side of -x, and half a glossy one: what is hidden of the coats' mirror is a
 /// share, and that of lobes is light.
 TEST_F(SubtractiveShadowsTest, CoatsAndLobesSideBySideKeepTheirOwnShadows) {

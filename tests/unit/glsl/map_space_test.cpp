@@ -248,6 +248,37 @@ TEST_P(MapSpace, NoPlaceInABoxHasAThresholdBeyondItsRange) {
   }
 }
 
+/// Also where the light's centre lies beneath the tangent plane, and what blocks behind it.
+TEST_P(MapSpace, BoundsOfABoxDecideAsItsTexelsDo) {
+  int beneath = 0, blocked = 0;
+  for (int i = 0; i < 40000; ++i) {
+    const Case c = someCase();
+    const vec2 low(std::floor(uniform(0, 400)), std::floor(uniform(0, 400)));
+    const vec2 high = low + vec2(std::floor(uniform(0, 100)), std::floor(uniform(0, 100)));
+    const vec2 range = map_threshold_range(c.view, c.in_map, low + vec2(0.5f), high + vec2(0.5f));
+    const vec2 texel = floor(mix(low, high + vec2(0.99f), vec2(uniform(0, 1), uniform(0, 1))));
+    const float stored = uniform(0, 1), depth = shadow_metres(c.view, stored);
+    const vec3 b = shadow_texel_offset(c.view, ivec2(texel), stored);
+    // Metres: where rounding decides.
+    constexpr float rounding = 1e-3f;
+    if (std::abs(dot(c.general.normal, b) - c.general.height) < rounding ||
+        std::abs(c.general.depth - dot(c.general.axis, b)) < rounding)
+      continue;
+    const bool blocks = map_blocks(c.view, c.in_map, texel, depth);
+    if (stored < range.x) {
+      EXPECT_TRUE(blocks) << i;
+    }
+    if (stored >= range.y) {
+      EXPECT_FALSE(blocks) << i;
+    }
+    if (!map_from_beneath(c.view, c.in_map)) continue;
+    ++beneath;
+    blocked += blocks ? 1 : 0;
+  }
+  EXPECT_GT(beneath, 400);
+  EXPECT_GT(blocked, 40);
+}
+
 /// Of rectangles: the sides of other lights need not be the map's.
 class MapBoxes : public MapSpace {};
 

@@ -168,5 +168,58 @@ TEST(ShadowKernel, FacesOfACubeShareAKernelBetweenThem) {
   EXPECT_FALSE(shadow_kernel(back, seen, receiver, 2, false, least_kernel_width, none));
 }
 
+/// Faces 0 to 4 of the half cube of a light whose face 0 is given.
+ShadowView faceOf(const ShadowView& first, int face) {
+  const vec3 x = first.axis_x, y = first.axis_y, z = first.axis_z;
+  const vec3 axes[5][3] = {{x, y, z}, {y, z, x}, {z, y, -x}, {z, x, y}, {x, z, -y}};
+  ShadowView view = first;
+  view.axis_x = axes[face][0];
+  view.axis_y = axes[face][1];
+  view.axis_z = axes[face][2];
+  return view;
+}
+
+/// What blocks lies on a ray to the light, no nearer than the near plane in the face that sees it: the
+/// kernels at the depth where that may begin hold all of it, beside the light's axis, too.
+TEST(ShadowKernel, KernelsWhereTheFacesOfAHalfCubeBeginHoldAllThatBlocks) {
+  std::mt19937 random(5);
+  std::uniform_real_distribution<float> uniform(0, 1);
+  const Light light = squareLight(0.6f, vec3(0, 1, 0), vec3(0, -1, 0));
+  int beside = 0, nearer = 0;
+  for (int i = 0; i < 20000; ++i) {
+    ShadowView first = viewOf(light, shadow_perspective, 1, 512);
+    // Some of them within reach of the light's own edges.
+    first.near = 0.05f + 0.9f * uniform(random);
+    const vec3 receiver(16 * uniform(random) - 8, 0.02f * uniform(random) - 0.02f, 16 * uniform(random) - 8);
+    const LightView seen = light_view(light, receiver, vec3(0, 1, 0), -1);
+    const float nearest = shadow_faces_nearest(first, seen, receiver);
+    ASSERT_LE(nearest, first.near);
+    ASSERT_GT(nearest, 0);
+    const vec2 p(uniform(random) - 0.5f, uniform(random) - 0.5f);
+    const float gap = seen.depth * uniform(random);
+    const vec3 blocker = receiver + gap * (seen.centre + p.x * seen.side_u + p.y * seen.side_v);
+    const uint32_t face = shadow_face(shadow_faces_hemicube, first, blocker);
+    const ShadowView view = faceOf(first, static_cast<int>(face));
+    if (shadow_view_depth(view, blocker) < first.near) continue;
+    const float depth = seen.depth - gap;
+    // Within reach of the light's edges what lies all but in the light's plane is left out.
+    const bool reached = first.near <= 0.3f;
+    if (reached && depth < 0.004f * 0.3f) continue;
+    EXPECT_GT(depth, nearest * (1 - 1e-4f) - 1e-6f) << "near " << first.near << ", face " << face;
+    if (face > 0) ++beside;
+    if (depth < first.near) ++nearer;
+    ShadowKernel kernel;
+    ASSERT_TRUE(shadow_kernel(view, seen, receiver, seen.depth - nearest, false, least_kernel_width, kernel))
+        << "near " << first.near << ", face " << face;
+    const vec2 at = 512.f * shadow_project(view, blocker).uv;
+    for (int c = 0; c < 2; ++c) {
+      EXPECT_GT(at[c], kernel.low[c] - 0.1f) << "near " << first.near << ", face " << face;
+      EXPECT_LT(at[c], kernel.high[c] + 0.1f) << "near " << first.near << ", face " << face;
+    }
+  }
+  EXPECT_GT(beside, 5000);
+  EXPECT_GT(nearer, 1000);
+}
+
 }  // namespace
 }  // namespace limn::glsl

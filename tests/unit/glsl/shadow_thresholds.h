@@ -56,6 +56,10 @@ inline vec2 shadow_threshold_range(const ShadowView& view, const ShadowReceiver&
     least = min(least, limits);
     most = max(most, limits);
   }
+  // Where the light comes from beneath the plane, what blocks lies behind it.
+  const bool beneath =
+      view.projection == shadow_orthographic ? receiver.normal.z >= 0.0f : receiver.height >= 0.0f;
+  if (beneath) most.x = view.far;
   return clamp(
       vec2(shadow_normalise(view, min(least.x, least.y)), shadow_normalise(view, min(most.x, most.y))),
       vec2(0.0f), vec2(1.0f));

@@ -7,6 +7,7 @@
 #include <cmath>
 #include <cstdint>
 #include <random>
+#include <utility>
 #include <vector>
 
 namespace limn {
@@ -119,7 +120,7 @@ struct Table {
                             x.weights[i] * y.weights[j], receiver, format);
       }
     }
-    return sat_moments(m, d, receiver, format);
+    return sat_moments(sat_beyond(m, lo, hi, {width, height}, receiver, format), d, receiver, format);
   }
 };
 
@@ -203,7 +204,13 @@ TEST(SummedAreaTable, OutsideTheMapCountsAsUnoccluded) {
   EXPECT_FLOAT_EQ(table.moments({-4, 0}, {4, 8}, 1).x, 0.5f);
   EXPECT_FLOAT_EQ(table.moments({4.5f, 2}, {11.5f, 6}, 1).x, 0.5f);
   EXPECT_FLOAT_EQ(table.moments({20, 20}, {24, 24}, 1).x, 0.f);
-  EXPECT_FLOAT_EQ(table.moments({-1e9f, -1e9f}, {1e9f, 1e9f}, 1).x, 1.f / 9);
+  // Kernels ten maps wide, which hold all of the map or six of its rows, and a far wider one.
+  for (const auto& [lo, inside] : {std::pair(vec2(-36), 64.f), {vec2(0, -72), 64.f}, {vec2(-70, 2), 48.f}}) {
+    const vec2 m = table.moments(lo, lo + vec2(80), 1);
+    EXPECT_FLOAT_EQ(m.x, inside / 6400) << lo.x;
+    EXPECT_FLOAT_EQ(m.y, inside / 6400) << lo.x << ": depths lie 1 and 0 before 1";
+  }
+  EXPECT_NEAR(table.moments({-1e9f, -1e9f}, {1e9f, 1e9f}, 1).x, 64 / 4e18, 1e-18);
   EXPECT_EQ(wide(table.box({-8, -8}, {16, 16}).z), uint64_t{512} * 65535);
 }
 

@@ -28,10 +28,16 @@ TEST(SubtractiveLevels, FadeOnTheWayFromOneToTheNext) {
   EXPECT_EQ(lights.fewer, (Level{17, 4}));
   EXPECT_EQ(lights.more, (Level{25, 4}));
   EXPECT_EQ(lights.shareOfMore, 0.25f);
-  // What is gone to or left has its blocks from the first frame to the last one.
+  // What is gone to next has its blocks from the first frame on, and nothing dearer than what is shown has
+  // them on the way down.
+  EXPECT_EQ(fadeAt(levels, 1, 2).fewer, levels[1]);
   EXPECT_EQ(fadeAt(levels, 1, 2).more, levels[2]);
-  EXPECT_EQ(fadeAt(levels, 1, 0).more, levels[2]);
-  EXPECT_EQ(fadeAt(levels, last, 0).more, levels.back());
+  for (const int level : {1, last}) {
+    const Fade down = fadeAt(levels, level, 0);
+    EXPECT_EQ(down.fewer, levels[static_cast<size_t>(level - 1)]);
+    EXPECT_EQ(down.more, levels[static_cast<size_t>(level)]);
+    EXPECT_EQ(down.shareOfMore, 1);
+  }
 }
 
 }  // namespace
