@@ -12,9 +12,9 @@
 #include "core/base/error.h"
 #include "core/caustics/ray_lists.h"
 #include "core/caustics/specular_buffers.h"
-#include "core/gpu_scene/gpu_medium.h"
 #include "core/gpu_scene/light_textures.h"
 #include "core/shadow/light_fit.h"
+#include "glsl/light/rectangle_light.glsl"
 #include "glsl/numeric/sampling.glsl"
 #include "glsl/scene/blocks.glsl"
 
@@ -81,8 +81,7 @@ struct CausticRayService::Implementation {
 
 /// Views of the specular objects for the current lights and bounds.
 void CausticRayService::Implementation::fit(Request& request) const {
-  scene::Bounds objects;
-  for (const scene::Bounds& box : boxes) objects.add(box);
+  const scene::Bounds objects = scene.specularBounds();
   request.views.clear();
   request.layers.clear();
   float mapIndex = 0;
@@ -94,9 +93,7 @@ void CausticRayService::Implementation::fit(Request& request) const {
     const std::vector<glm::vec2> points = shadow::samplesOf(light, samplesDesc);
     for (const glm::vec2& point : points) {
       desc.samples[0] = point;
-      const glm::vec2 ab = point - 0.5f;
-      const glm::vec3 origin =
-          light.position + ab.x * light.length_u * light.axis_u + ab.y * light.length_v * light.axis_v;
+      const glm::vec3 origin = glsl::rectangle_point(light, point - 0.5f);
       const glsl::Light eye = aimed(light, origin, objects);
       ofPoint.clear();
       shadow::appendViews(eye, index, shadow::fitLayout(eye, boxes, desc), boxes, desc, nullptr,
@@ -156,7 +153,7 @@ frame::BufferHandle CausticRayService::Implementation::trace(const Request& requ
                                       {"PATH_COUNT", std::to_string(request.made.paths)},
                                       {"OBJECT_FACES", severalViews ? "1" : "0"},
                                       {"EXIT_STEPS", std::to_string(request.desc.exitSteps)}}};
-  const scene::MediumInput medium(handles);
+  const scene::MediumInput medium(handles, request.desc.mediumSteps);
   medium.define(source.defines);
   medium.declare(pass);
   const scene::LightTextureInput textures(handles);

@@ -14,6 +14,7 @@
 #include <span>
 
 #include "core/frame/frame_graph.h"
+#include "core/gpu_scene/gpu_medium.h"
 #include "core/gpu_scene/gpu_scene.h"
 #include "core/shadow/shadow_map.h"
 #include "core/technique/technique.h"
@@ -28,6 +29,9 @@ struct CausticRayDesc {
   int lightSamples = 1;  ///< points on each light with extent; 1: its centre
   int steps = 64;        ///< of the search for a ray's intersection with the scene
   int exitSteps = 32;    ///< of the search for where light inside an object leaves it
+  /// Number of points at which a medium's grid is looked up on the light's way to an object, as in
+  /// scene::MediumInput.
+  int mediumSteps = scene::kCoreMediumSteps;
   bool operator==(const CausticRayDesc&) const = default;
 };
 

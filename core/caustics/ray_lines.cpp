@@ -23,6 +23,13 @@ const char* whyNoRays(const TechniqueInputs& inputs, const TermRequest& request)
   return request.lights.empty() ? "the scene has no light" : nullptr;
 }
 
+/// Whether light passes any specular surface.
+bool refracts(const scene::Scene& scene) {
+  return std::ranges::any_of(scene.materials, [](const scene::Material& material) {
+    return material.specularSurface() && material.transmission > 0;
+  });
+}
+
 /// Which rays are drawn as lines, points and quads.
 struct Shapes {
   RayLists lists;
@@ -68,15 +75,25 @@ CausticRayDesc causticRayDesc(const ParameterValues& p) {
           .paths = static_cast<uint32_t>(p.choice("paths") + 1),
           .lightSamples = p.integer("light_samples"),
           .steps = p.integer("ray_steps"),
-          .exitSteps = p.integer("exit_steps")};
+          .exitSteps = p.integer("exit_steps"),
+          .mediumSteps = std::max(p.integer("medium_steps"), scene::kCoreMediumSteps)};
 }
 
 CausticRays requestRays(frame::FrameGraph& graph, const TechniqueInputs& inputs, const TermRequest& request,
                         std::string_view pass, std::string_view technique) {
   const char* dark = whyNoRays(inputs, request);
   CausticRays rays;
-  if (!dark)
-    rays = inputs.service<CausticRayService>().request(request.lights, causticRayDesc(inputs.parameters));
+  CausticRayDesc desc = causticRayDesc(inputs.parameters);
+  if (!inputs.handles.density) desc.mediumSteps = scene::kCoreMediumSteps;  // so that rays are shared
+  if (!dark && (desc.paths & glsl::caustic_refraction) != 0 && !refracts(inputs.scene)) {
+    constexpr const char* opaque = "no specular surface lets light through";
+    desc.paths &= ~glsl::caustic_refraction;
+    if (desc.paths == 0)
+      dark = opaque;
+    else
+      graph.leaveOut("refracted rays", technique, opaque);
+  }
+  if (!dark) rays = inputs.service<CausticRayService>().request(request.lights, desc);
   if (!dark && !rays.rays) dark = "no light meets a specular surface";
   if (dark) graph.leaveOut(pass, technique, dark);
   return rays;

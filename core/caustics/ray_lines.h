@@ -46,10 +46,14 @@ constexpr Parameter beamCosineParameter() {
   return real("beam_cosine", 0.7, {-1, 1}, "cosine",
               "Neighbouring rays whose directions part by a smaller cosine are of different beams");
 }
+/// Returns what rayParameters() and scene::mediumStepsParameter() ask for. Of the latter the light's way to
+/// an object takes no fewer than core's passes do, since each ray has one such way, however it is drawn.
 LIMN_API CausticRayDesc causticRayDesc(const ParameterValues& parameters);
 
 /// Returns the rays of the request's lights. When there are none (no light, no specular material, no light
-/// that meets one; for media, no scattering), `rays` is empty and `pass` is reported as left out.
+/// that meets one, no glass where only refraction is asked for; for media, no scattering), `rays` is empty
+/// and `pass` is reported as left out. Refraction is traced only where a specular material lets light
+/// through, else "refracted rays" are reported as left out.
 LIMN_API CausticRays requestRays(frame::FrameGraph& graph, const TechniqueInputs& inputs,
                                  const TermRequest& request, std::string_view pass,
                                  std::string_view technique);

@@ -1,5 +1,7 @@
 #include "core/caustics/specular_buffers.h"
 
+#include <algorithm>
+
 #include "core/shadow/light_fit.h"
 #include "glsl/scene/blocks.glsl"
 
@@ -31,11 +33,14 @@ SpecularBuffer SpecularBuffers::addPass(frame::FrameGraph& graph, const SceneHan
   const bool back = front != nullptr;
   frame::PassBuilder pass = graph.addPass(back ? "specular back" : "specular front", owner);
   pass.role(frame::PassRole::map);
+  const bool masked = std::ranges::any_of(scene_.scene().materials, [](const scene::Material& material) {
+    return material.specularSurface() && material.alphaCutoff > 0;
+  });
   const scene::SurfacePrograms programs = scene_.declareSurfaces(
       pass, handles,
       {.files = {"glsl/caustics/specular.vert.glsl", "glsl/caustics/specular.frag.glsl"},
-       .defines = {{"BACK", back ? "1" : "0"}}},
-      false);
+       .defines = {{"BACK", back ? "1" : "0"}, {"MASKED", "0"}}},
+      masked);
   pass.read(views, Access::storageLoad, "Views", "projections").cacheable();
   if (back) pass.read(front->surface, Access::sampled, "front", "instances whose back is wanted");
   gpu::TextureDesc desc{.target = GL_TEXTURE_2D_ARRAY,

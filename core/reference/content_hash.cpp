@@ -148,8 +148,10 @@ void addWork(Hasher& h, const Request& r) {
   constexpr uint32_t causticVersion = 4;
   const bool caustics = r.term == Term::final || r.term == Term::caustic || r.term == Term::media;
   const bool chains = r.term == Term::specular && r.interfaces == kAllInterfaces;
-  if ((caustics || chains) && std::ranges::any_of(r.scene.materials, &scene::Material::specularSurface))
-    h.add(causticVersion);
+  const bool specular = std::ranges::any_of(r.scene.materials, &scene::Material::specularSurface);
+  if (specular && (caustics || chains)) h.add(causticVersion);
+  constexpr uint32_t hiddenAsSeen = 0x5eeb;  // earlier results lack caustics behind back faces
+  if (specular && (r.term == Term::final || r.term == Term::caustic)) h.add(hiddenAsSeen);
   constexpr uint32_t airlightVersion = 0xa162;
   const bool air = r.term == Term::final || r.term == Term::media;
   if (air && r.scene.medium.sigmaS != glm::vec3(0) && r.scene.environment) h.add(airlightVersion);

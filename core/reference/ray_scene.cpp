@@ -10,6 +10,8 @@
 #include <utility>
 
 #include "core/base/error.h"
+#include "core/scene/draw_instance.h"
+#include "core/scene/normal_matrix.h"
 #include "core/scene/texture_lookup.h"
 #include "glsl/surface/texture_level.glsl"
 
@@ -22,6 +24,7 @@ struct Context {
   const RayScene* scene;
   const glsl::FrameBlock* frame = nullptr;  ///< null: not a view ray
   int x = 0, y = 0;
+  float away = 1;  ///< 1: a view ray leads away from the camera, -1: to it
 
   explicit Context(const RayScene* of) : scene(of) { rtcInitIntersectContext(&embree); }
 };
@@ -85,7 +88,7 @@ void surfaceFilter(const RTCFilterFunctionNArguments* args) {
     // The camera sees no back faces. Embree gives ray and normal in the geometry's own space, where the
     // winding is the file's.
     const float facing = hit.Ng_x * ray.dir_x + hit.Ng_y * ray.dir_y + hit.Ng_z * ray.dir_z;
-    if (facing * user.orientation >= 0.f) {
+    if (facing * user.orientation * context.away >= 0.f) {
       args->valid[0] = 0;
       return;
     }
@@ -121,16 +124,6 @@ float largestCoordinate(const glm::vec3* positions, size_t count, const glm::mat
     largest = std::max(largest, std::abs(matrix[0][row]) * reach.x + std::abs(matrix[1][row]) * reach.y +
                                     std::abs(matrix[2][row]) * reach.z + std::abs(matrix[3][row]));
   return largest;
-}
-
-/// Direction of the inverse transpose by cofactors: no division, so that flat and tiny instances keep their
-/// normals.
-glm::mat3 normalMatrix(const glm::mat4& matrix) {
-  const glm::dmat3 m{glm::dmat4(matrix)};
-  const double scale = std::max({glm::length(m[0]), glm::length(m[1]), glm::length(m[2]), 1e-300});
-  const double side = (glm::determinant(m) < 0 ? -1 : 1) / (scale * scale);
-  return glm::mat3(glm::dmat3(side * glm::cross(m[1], m[2]), side * glm::cross(m[2], m[0]),
-                              side * glm::cross(m[0], m[1])));
 }
 
 void fail(RTCDevice device, const char* what) {
@@ -293,21 +286,16 @@ RayScene::RayScene(const scene::Scene& scene, const scene::Pose& pose, bool unsh
   for (const scene::DrawInstance& instance : pose.instances) {
     const auto id = static_cast<unsigned>(draws_.size());
     const bool dynamic = instance.node == scene::kNone;
-    const auto mesh = static_cast<size_t>(instance.mesh);
-    const scene::Primitive& primitive =
-        dynamic ? *pose.dynamic[mesh].primitive
-                : scene.meshes[mesh].primitives[static_cast<size_t>(instance.primitive)];
-    const int material = dynamic ? scene.dynamic[mesh].material : primitive.material;
+    const scene::Primitive& primitive = scene::primitiveOf(scene, pose, instance);
     Draw& draw = draws_.emplace_back();
     draw.primitive = &primitive;
-    draw.material = &scene.materials[static_cast<size_t>(material)];
+    draw.material = &scene::materialOf(scene, instance);
     draw.normals = primitive.normals.data();
     draw.tangents = primitive.tangents.empty() ? nullptr : primitive.tangents.data();
     const glm::mat4& matrix = instance.objectToWorld;
     draw.tangentToWorld = glm::mat3(matrix);
-    draw.normalToWorld = normalMatrix(matrix);
-    const bool mirrors = glm::determinant(glm::dmat3(glm::dmat4(matrix))) < 0;
-    draw.orientation = mirrors != instance.mirroredSkin ? -1.f : 1.f;
+    draw.normalToWorld = scene::normalMatrix(matrix);
+    draw.orientation = scene::mirrored(instance) ? -1.f : 1.f;
 
     const std::pair<int, int> key{instance.mesh, instance.primitive};
     if (!dynamic && instance.deformed == scene::kNone && uses[key] > 1) {
@@ -373,6 +361,19 @@ bool RayScene::see(const glsl::FrameBlock& frame, float near, int x, int y, Hit&
       hierarchy_->top, context,
       rayFrom(glm::vec3(frame.camera_position), direction, near, std::numeric_limits<float>::infinity()),
       hit);
+}
+
+bool RayScene::hidden(const glsl::FrameBlock& frame, float near, int x, int y,
+                      const glm::vec3& origin) const {
+  Context context(this);
+  context.frame = &frame;
+  context.x = x;
+  context.y = y;
+  context.away = -1;
+  const glm::vec3 towards = glm::vec3(frame.camera_position) - origin;
+  const float depth = -(frame.world_to_view * glm::vec4(origin, 1)).z;
+  Hit hit;
+  return intersect(hierarchy_->top, context, rayFrom(origin, towards, 0.f, 1 - near / depth), hit);
 }
 
 bool RayScene::nearest(const glm::vec3& origin, const glm::vec3& direction, Hit& hit) const {

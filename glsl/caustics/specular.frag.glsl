@@ -1,12 +1,15 @@
 // A texel of the specular buffers: shading normal and which surface it is, linear depth, and the triangle's normal. BACK 1:
-// only the instance that the front buffer shows there.
+// only the instance that the front buffer shows there. MASKED 1: alpha test first; TEXTURES, COLOURS: see surface_input.glsl.
 #include "glsl/surface/gbuffer.glsl"
 #include "glsl/geometry/triangle_input.glsl"
+#if MASKED
+#include "glsl/geometry/surface_input.glsl"
+#endif
 
 layout(location = 0) in vec3 normal_ws;
 layout(location = 1) in float linear_depth;
-layout(location = 2) flat in uint layer;
-layout(location = 3) in vec3 from_eye;
+layout(location = 5) flat in uint layer;
+layout(location = 6) in vec3 from_eye;
 
 layout(location = 0) out vec4 stored_surface;  // xyz: normal; w: +-(instance + 1), negative where the back is seen
 layout(location = 1) out float stored_depth;
@@ -17,6 +20,9 @@ uniform sampler2DArray front;
 #endif
 
 void main() {
+#if MASKED
+  alpha_test();
+#endif
   float id = float(surface_instance.x + 1u);
 #if BACK
   if (abs(texelFetch(front, ivec3(ivec2(gl_FragCoord.xy), layer), 0).w) != id) discard;

@@ -1,4 +1,5 @@
-// Specular objects as the views of caustic rays see them. BACK 1: the farthest surface wins instead of the nearest.
+// Specular objects as the views of caustic rays see them. BACK 1: the farthest surface wins instead of the nearest. MASKED 1:
+// passes on what an alpha test needs. COLOURS 1: vertex colours.
 #include "glsl/scene/blocks.glsl"
 #include "glsl/shadow/shadow_view.glsl"
 #include "glsl/geometry/vertex.glsl"
@@ -12,9 +13,17 @@ layout(std430) readonly buffer Views { ShadowView views[]; };
 
 layout(location = 0) out vec3 normal_ws;
 layout(location = 1) out float linear_depth;
-layout(location = 2) flat out uint layer;
-layout(location = 3) out vec3 from_eye;  // of the view, towards the surface
+#if MASKED
+layout(location = 3) in vec2 uv;
+layout(location = 2) out vec2 surface_uv;
+#if COLOURS
+layout(location = 4) in vec4 colour;
+layout(location = 3) out vec4 surface_colour;
+#endif
+#endif
 layout(location = 4) flat out uvec3 surface_instance;  // draw instance, first vertex, first index
+layout(location = 5) flat out uint layer;
+layout(location = 6) out vec3 from_eye;  // of the view, towards the surface
 
 void main() {
   ShadowView view = views[entry.y];
@@ -28,4 +37,10 @@ void main() {
   layer = view.layer;
   from_eye = view.projection == shadow_orthographic ? view.axis_z : world - view.origin;
   surface_instance = uvec3(entry.x, instances[entry.x].first_vertex, instances[entry.x].first_index);
+#if MASKED
+  surface_uv = uv;
+#if COLOURS
+  surface_colour = colour;
+#endif
+#endif
 }

@@ -34,6 +34,20 @@ vec4 surface_base(vec2 uv_dx, vec2 uv_dy) {
   return base;
 }
 
+#if MASKED
+// Drops fragments that the mask cuts out, at texture level 0, as shadow maps and the reference's shadow rays do.
+void alpha_test() {
+  float alpha = material.base_colour.a;
+#if COLOURS
+  alpha *= surface_colour.a;
+#endif
+  if ((textures & material_has_base_colour_texture) != 0u) {
+    alpha *= textureLod(base_colour_texture, surface_uv, 0.0).a;
+  }
+  if (alpha < material.alpha_cutoff) discard;
+}
+#endif
+
 // Metallic and perceptual roughness.
 vec2 surface_metal_rough(vec2 uv_dx, vec2 uv_dy) {
   vec2 metal_rough = vec2(material.metallic, material.roughness);

@@ -45,6 +45,11 @@ LIMN_FN vec3 rectangle_point(Rectangle r, vec2 ab) {
   return r.centre + ab.x * r.u + ab.y * r.v;
 }
 
+// The same of a light, in world space: of a distant rectangle in its plane, of one without sides its position.
+LIMN_FN vec3 rectangle_point(Light light, vec2 ab) {
+  return light.position + ab.x * light.length_u * light.axis_u + ab.y * light.length_v * light.axis_v;
+}
+
 // +1 where the receiver is in front of the light, -1 behind it, 0 in its plane.
 LIMN_FN float rectangle_side(Light light, vec3 receiver) {
   float height = dot(light.direction, receiver - light.position);

@@ -31,14 +31,18 @@ LIMN_FN vec3 coated_response(MaterialModel m, vec3 v, vec3 l) {
   return response * (vec3(1.0f) - coated_mirror(m, l.z)) * coated_escape(m, mean) / (vec3(1.0f) - mean);
 }
 
-// Hemispherical reflectance of the base alone.
-LIMN_FN vec3 coated_albedo(MaterialModel m) {
+// What the base alone reflects of light that comes evenly from all directions; leaving: the share of light towards the viewer
+// that the coat does not reflect.
+LIMN_FN vec3 coated_base(MaterialModel m, vec3 leaving) {
   if ((m.options & (model_option_blend | model_option_physical)) == 0u) return m.kd;
-  vec3 passing = vec3(1.0f) - mean_reflectance(m.eta, m.k);
-  if ((m.options & model_option_physical) == 0u) return m.kd * passing;
+  if ((m.options & model_option_physical) == 0u) return m.kd * leaving;
+  vec3 entering = vec3(1.0f) - mean_reflectance(m.eta, m.k);
   vec3 mean = dielectric_mean_reflectance(m.eta);
-  return m.kd * passing * passing * coated_escape(m, mean) / (vec3(1.0f) - mean);
+  return m.kd * leaving * entering * coated_escape(m, mean) / (vec3(1.0f) - mean);
 }
+
+// Hemispherical reflectance of the base alone.
+LIMN_FN vec3 coated_albedo(MaterialModel m) { return coated_base(m, vec3(1.0f) - mean_reflectance(m.eta, m.k)); }
 
 LIMN_END
 #endif  // LIMN_COATED_GLSL

@@ -65,8 +65,9 @@ class Airlight : public Technique {
     if (inputs.scene.environment && !dark && std::ranges::none_of(lights, [&](uint32_t light) {
           return (inputs.pose.lights[light].flags & glsl::light_flag_environment) != 0;
         }))
-      graph.leaveOut("airlight of the environment", info.name,
-                     "no lights stand for it (--environment-lights)");
+      graph.leaveOut(
+          "airlight of the environment", info.name,
+          request.chosen ? "another light was chosen" : "no lights stand for it (--environment-lights)");
     if (lights.empty()) dark = "the scene has no light";
     if (dark) {
       graph.leaveOut("airlight", info.name, dark);

@@ -57,25 +57,28 @@ constexpr StressCase kStress[] = {
     {.name = "1024 steps through glass", .scene = "glass_sphere", .settings = "exit_steps=1024"},
 };
 
-/// The camera as a view of the specular objects: a square around the picture.
+/// The camera as a view of the specular objects: a square around the picture. The matrix may be sheared, for
+/// samples beside the middle of a pixel: the picture then lies beside the axis.
 glsl::ShadowView viewOf(const scene::CameraPose& camera, const scene::Bounds& objects, glm::ivec2 picture,
                         int size) {
-  const glm::mat3 rotation = glm::transpose(glm::mat3(camera.worldToView));  // columns: the camera's axes
-  const glm::vec3 eye = -rotation * glm::vec3(camera.worldToView[3]);
+  const glm::mat4 viewToWorld(glm::inverse(glm::dmat4(camera.worldToView)));
+  const glm::vec3 x = glm::normalize(glm::vec3(viewToWorld[0])),
+                  y = glm::normalize(glm::vec3(viewToWorld[1]));
+  const glm::vec3 middle = -glm::vec3(viewToWorld[2]);  // of the picture, 1 m deep
   const float aspect = static_cast<float>(picture.x) / static_cast<float>(picture.y);
   const float tangent =
       std::tan(0.5f * camera.yfov) * std::max(aspect, 1.f) * (1 + 4 / static_cast<float>(size));
   const scene::DepthRange range = scene::fitDepthRange(camera, objects);
   glsl::ShadowView view{};
-  view.origin = eye;
+  view.origin = glm::vec3(viewToWorld[3]);
   view.near = range.near;
-  view.axis_x = glm::normalize(rotation[0]);
+  view.axis_x = x;
   view.scale = 0.5f / tangent;
-  view.axis_y = glm::normalize(rotation[1]);
+  view.axis_y = y;
   view.footprint = 2 * tangent / static_cast<float>(size);
-  view.axis_z = -glm::normalize(rotation[2]);
+  view.axis_z = glm::cross(y, x);
   view.far = range.far;
-  view.middle = glm::vec2(0.5f, 0.5f);
+  view.middle = 0.5f - view.scale * glm::vec2(glm::dot(x, middle), glm::dot(y, middle));
   view.projection = glsl::shadow_perspective;
   view.size = static_cast<uint32_t>(size);
   view.light = glsl::no_light;
@@ -95,9 +98,7 @@ class ImageSpaceRefraction : public Technique {
 
   /// True: the view is another one.
   bool fit() {
-    scene::Bounds objects;
-    for (uint32_t i = 0; i < scene_->instanceCount(); ++i)
-      if (scene_->specular(i)) objects.add(scene_->bounds(i));
+    const scene::Bounds objects = scene_->specularBounds();
     diameter_ = 2 * objects.radius();
     const glsl::ShadowView before = view_;
     view_ = viewOf(scene_->camera(), objects, picture_, size_);

@@ -31,9 +31,7 @@ constexpr StressCase kStress[] = {
 
 /// Returns how far the middle of the specular objects is from the camera, in metres; at least their radius.
 float objectsDistance(const scene::GpuScene& scene) {
-  scene::Bounds objects;
-  for (uint32_t i = 0; i < scene.instanceCount(); ++i)
-    if (scene.specular(i)) objects.add(scene.bounds(i));
+  const scene::Bounds objects = scene.specularBounds();
   const glm::vec3 eye(scene.frame().camera_position);
   return std::max(glm::length(objects.centre() - eye), objects.radius());
 }

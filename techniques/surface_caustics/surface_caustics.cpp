@@ -6,6 +6,7 @@
 #include "core/caustics/ray_lines.h"
 #include "core/caustics/ray_lists.h"
 #include "core/gpu_scene/gpu_medium.h"
+#include "core/gpu_scene/surface_input.h"
 #include "core/shading_maps/shading_maps.h"
 #include "core/technique/technique.h"
 
@@ -188,11 +189,13 @@ class SurfaceCaustics : public Technique {
         .read(irradiance, Access::sampled, "irradiance", "what arrives")
         .read(inputs.service<shading_maps::ShadingMapService>().ltcTable(), Access::sampled, "ltc_table",
               "what Fresnel's term leaves to the diffuse part");
-    readSurfaces(pass, inputs.gbuffer);
+    gpu::ProgramDesc desc{.files = {"techniques/surface_caustics/reflect.comp.glsl"}, .defines = {}};
+    const scene::SurfaceInput surfaces(inputs.handles, inputs.gbuffer);
+    surfaces.define(desc.defines);
+    surfaces.declare(pass);
     const frame::TextureHandle result =
         pass.write(target, Access::imageLoadStore, "radiance", "reflected caustics");
-    const auto program =
-        pass.program({.files = {"techniques/surface_caustics/reflect.comp.glsl"}, .defines = {}});
+    const auto program = pass.program(std::move(desc));
     pass.execute([program, size = inputs.size](frame::PassContext& context) {
       context.use(program);
       context.dispatch(size.x, size.y, 1, 8, 8);

@@ -84,6 +84,22 @@ TEST_F(InhomogeneousMediaTest, ARampAttenuatesSurfacesByItsIntegral) {
   EXPECT_GT(compared, 1000);
 }
 
+/// A layer of one voxel, 0.035 m, that lies between the lamp and the ball and on no other way of light
+/// takes 1 - exp(-1.5) of it. Of 32 points across the box, 0.14 m apart, half the ways to the
+/// ball have none in it, and 2.5 times the light would pass; of 256 each way has four.
+TEST_F(InhomogeneousMediaTest, AThinLayerBeforeGlassTakesItsShare) {
+  scene::Scene scene = asset("glass_sphere");
+  scene.medium = {};
+  scene.medium.sigmaA = glm::vec3(40);
+  scene::setGrid(scene.medium,
+                 test::gridOf({2, 128, 2}, glm::vec3(-3, 0, -3), glm::vec3(3, 4.5f, 3),
+                              [](const glm::vec3& p) { return p.y > 2.99f && p.y < 3.02f ? 1.f : 0.f; }));
+  render::Renderer renderer(device(), scene);
+  const Image ours = picture(renderer, settings(width, height, Term::caustic,
+                                                {technique("surface_caustics", {{"medium_steps", "256"}})}));
+  EXPECT_NEAR(mean(ours) / mean(reference(renderer, scene, Term::caustic, 64)), 1, 0.05);
+}
+
 TEST_F(InhomogeneousMediaTest, SmokeIsAsBrightAsTheReference) {
   const scene::Scene scene = asset("smoke");
   render::Renderer renderer(device(), scene);

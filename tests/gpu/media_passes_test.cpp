@@ -1,6 +1,7 @@
 // The passes of media and caustics: which run, which are left out where there is nothing for them, and which
 // keep what they have.
 #include "tests/gpu/media_harness.h"
+#include "tests/support/environment_maps.h"
 
 namespace limn {
 namespace {
@@ -21,6 +22,18 @@ TEST_F(MediaPassesTest, AMediumThatScattersNothingCostsNothing) {
   const Image without =
       picture(renderer, settings(width, height, Term::final, {technique("hard_shadow_map")}));
   EXPECT_TRUE(sameBits(with, without));
+}
+
+TEST_F(MediaPassesTest, AirlightSaysWhyItLacksTheEnvironment) {
+  scene::Scene scene = asset("glass_sphere");
+  scene.environment = test::environmentOf(16, [](const glm::vec3&) { return glm::vec3(1); });
+  render::Renderer renderer(device(), scene);
+  const auto reason = [&](int light) {
+    picture(renderer, settings(8, 6, Term::media, {quick("airlight")}, light));
+    return stateOf(renderer, "airlight", "airlight of the environment");
+  };
+  EXPECT_EQ(reason(-1), "no lights stand for it (--environment-lights)");
+  EXPECT_EQ(reason(0), "another light was chosen");
 }
 
 TEST_F(MediaPassesTest, NoMediumIsTheSamePictureBitForBit) {
@@ -45,6 +58,31 @@ TEST_F(MediaPassesTest, WithoutSpecularSurfacesThereAreNoLines) {
                                             {technique("surface_caustics", {{"splat", splat}})})),
                  0, 0);
   EXPECT_EQ(stateOf(renderer, "surface_caustics", "caustic map"), "the scene has no specular surface");
+}
+
+TEST_F(MediaPassesTest, WhereNothingIsTransparentNoRefractionIsTraced) {
+  const scene::Scene scene = asset("ring");
+  render::Renderer renderer(device(), scene);
+  const auto lines = [&](const char* paths) {
+    return picture(renderer,
+                   settings(width, height, Term::media, {technique("volume_caustics", {{"paths", paths}})}));
+  };
+  const auto bytesOfRays = [&] {
+    int64_t bytes = 0;
+    for (const auto& pass : renderer.explain())
+      for (const auto& access : pass.accesses)
+        if (pass.name == "caustic rays" && access.write) bytes += access.bytes;
+    return bytes;
+  };
+  const Image both = lines("both");
+  EXPECT_EQ(stateOf(renderer, "volume_caustics", "refracted rays"), "no specular surface lets light through");
+  const int64_t bytes = bytesOfRays();
+  EXPECT_TRUE(sameBits(both, lines("reflection")));
+  EXPECT_EQ(stateOf(renderer, "volume_caustics", "refracted rays"), "unknown");
+  EXPECT_GT(bytes, 0);
+  EXPECT_EQ(bytes, bytesOfRays());
+  expectWithin(lines("refraction"), 0, 0);
+  EXPECT_EQ(stateOf(renderer, "volume_caustics", "caustic lines"), "no specular surface lets light through");
 }
 
 /// A software renderer needs no barriers: the list itself is what is checked.

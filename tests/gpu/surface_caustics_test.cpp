@@ -4,7 +4,9 @@
 #include <cmath>
 
 #include "core/scene/camera.h"
+#include "core/scene/material_model.h"
 #include "tests/gpu/media_harness.h"
+#include "tests/support/scene_nodes.h"
 
 namespace limn {
 namespace {
@@ -76,6 +78,50 @@ TEST_F(SurfaceCausticsTest, DielectricFloorsReflectWhatFresnelLeaves) {
     m.ior = 1.8f;
   }
   EXPECT_NEAR(brightness() / matte, 1 - std::pow(0.8 / 2.8, 2), 0.004);
+}
+
+/// A floor with a model shows of a caustic what its diffuse part reflects: that of kd = 0.6 what the
+/// Lambertian floor of that albedo does, whatever its lobe, and the reference's without one. Under a coat of
+/// index 1.5 that is seen head-on it shows (1 - F) (1 - Fi) / (1 - kd Fi) of it: F = 0.04 is reflected at the
+/// coat, and Fi = 0.596 of diffuse light below it.
+TEST_F(SurfaceCausticsTest, FloorsWithAModelReflectTheirDiffusePart) {
+  scene::Scene scene = asset("glass_sphere");
+  scene.medium = {};
+  const auto brightness = [&](bool compared = false) {
+    render::Renderer renderer(device(), scene);
+    const render::Settings asked = settings(width, height, Term::caustic, {technique("surface_caustics")});
+    if (compared) {
+      EXPECT_NEAR(mean(picture(renderer, asked)) / mean(reference(renderer, scene, Term::caustic, 64)), 1,
+                  0.03);
+    }
+    return mean(picture(renderer, asked, scene::lookAt({0.6f, 4, 0.01f}, {0.6f, 0, 0}, 0.3f)));
+  };
+  const auto paint = [&](const glsl::MaterialModel* model) {
+    for (scene::Material& m : scene.materials) {
+      if (m.specularSurface()) continue;
+      m = test::lambertian(0.6f);
+      if (model) scene::setModel(m, *model);
+    }
+  };
+  paint(nullptr);
+  const double matte = brightness();
+  ASSERT_GT(matte, 0);
+  glsl::MaterialModel model{};
+  model.kind = glsl::model_phong;
+  model.kd = glm::vec3(0.6f);
+  model.exponent = 10;
+  paint(&model);
+  EXPECT_NEAR(brightness(true) / matte, 1, 1e-3);
+  model.ks = glm::vec3(0.3f);
+  paint(&model);
+  EXPECT_NEAR(brightness() / matte, 1, 1e-3);
+  model = {};
+  model.kind = glsl::model_coated;
+  model.options = glsl::model_option_physical;
+  model.eta = glm::vec3(1.5f);
+  model.kd = glm::vec3(0.6f);
+  paint(&model);
+  EXPECT_NEAR(brightness() / matte, (1 - 0.04) * (1 - 0.596) / (1 - 0.6 * 0.596), 0.01);
 }
 
 /// All of the floor is seen by the light. Where the ring's caustic is thinner than a pixel, photons on the

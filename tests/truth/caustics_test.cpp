@@ -93,6 +93,60 @@ TEST_F(CausticTruth, AMirrorIsAsBrightFromItsBack) {
   }
 }
 
+/// A pane 0.15 m before the eye, beside the light's way: where it shows its back to the camera and has one
+/// side, or lies before the near plane, the camera looks through it, at all of the caustic.
+TEST_F(CausticTruth, WhatTheCameraLooksThroughHidesNoCaustics) {
+  const dvec3 light = glm::normalize(dvec3(1, 0, -1)), leaves(light.x, 0, -light.z);
+  for (const bool clipped : {false, true}) {
+    SCOPED_TRACE(clipped ? "before the near plane" : "seen from behind");
+    scene::Scene scene;
+    test::show(scene, test::quad({0, 0, 0}, {1, 0, 0}, {0, 1, 0}, test::addMaterial(scene, test::silver())));
+    addWall(scene, {-1, 0, 0});
+    scene::Material pane = test::lambertian(0.5f);
+    pane.doubleSided = clipped;
+    test::show(scene, test::quad({-1.65f, -0.57f, 1.2f}, {0, 0.1f, 0}, {0, 0, 0.1f},
+                                 test::addMaterial(scene, pane)));
+    test::shine(scene, test::lamp(glsl::light_directional, float(kSun)), vec3(0), vec3(light));
+    const auto expected = [&](const dvec3& p, const dvec3&) {
+      return fullyLit(p, leaves) ? kGround / M_PI * kSun * leaves.x : nothing;
+    };
+    Question q = question(towardsWall(leaves), 128);
+    if (clipped) q.camera.near = 0.3f;
+    expectPicture(scene, q, expected, {.average = 0.02, .pixels = 300});
+    for (const int interfaces : {0, reference::kAllInterfaces}) {
+      q.interfaces = interfaces;
+      expectReference(scene, q, expected, {.average = 0.2, .pixels = 300});
+    }
+  }
+}
+
+/// Half of a mirror is cut out: what it sends to the wall is half of the caustic, with its edge in the
+/// middle.
+TEST_F(CausticTruth, TheHolesOfAMirrorReflectNothing) {
+  const dvec3 light = glm::normalize(dvec3(1, 0, -1)), leaves(light.x, 0, -light.z);
+  scene::Scene scene;
+  scene::TextureImage image;
+  image.levels.push_back({2, 1, {255, 255, 255, 255, 255, 255, 255, 0}});  // there where x < 0
+  scene.images.push_back(image);
+  scene::Material mirror = test::silver();
+  mirror.baseColourTexture = {0, scene::Wrap::clamp, scene::Wrap::clamp};
+  mirror.alphaCutoff = 0.5f;
+  test::show(scene, test::quad({0, 0, 0}, {1, 0, 0}, {0, 1, 0}, test::addMaterial(scene, mirror)));
+  addWall(scene, {-1, 0, 0});
+  test::shine(scene, test::lamp(glsl::light_directional, float(kSun)), vec3(0), vec3(light));
+  const auto expected = [&](const dvec3& p, const dvec3&) {
+    const double x = (p - leaves * (p.z / leaves.z)).x;
+    if (!fullyLit(p, leaves) || std::abs(x) < 0.1) return nothing;
+    return x < 0 ? kGround / M_PI * kSun * leaves.x : 0.0;
+  };
+  Question q = question(towardsWall(leaves), 512);
+  expectPicture(scene, q, expected, {.mean = 0.02, .average = 0.02, .pixels = 300});
+  for (const int interfaces : {0, reference::kAllInterfaces}) {
+    q.interfaces = interfaces;
+    expectReference(scene, q, expected, {.average = 0.2, .pixels = 300});
+  }
+}
+
 /// The sun through a plate of glass, 0.2 m thick, whose front may have tilted normals: Snell's directions,
 /// Fresnel's losses at both sides and Beer's on the way; where a shading normal bends light, its beam's
 /// radiance is kept (over the squared index), so that the irradiance across it changes as its solid angle

@@ -5,6 +5,7 @@
 
 #include "core/reference/reference.h"
 #include "glsl/light/light_view.glsl"
+#include "glsl/light/rectangle_light.glsl"
 
 namespace limn::reference {
 
@@ -21,8 +22,7 @@ inline std::vector<glsl::Light> mediumLights(const Request& request) {
 
 /// Returns the point on a light that u in [0, 1)^2 selects.
 inline glm::vec3 lightPoint(const glsl::Light& light, glm::vec2 u) {
-  return light.position + (u.x - 0.5f) * light.length_u * light.axis_u +
-         (u.y - 0.5f) * light.length_v * light.axis_v;
+  return glsl::rectangle_point(light, u - 0.5f);
 }
 
 /// Returns the unit direction that a directional light without sides shines along where u in [0, 1)^2 selects

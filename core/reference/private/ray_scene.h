@@ -88,6 +88,10 @@ class RayScene {
   /// whether there is one: cut-out texels and back faces of single-sided surfaces are passed through.
   bool see(const glsl::FrameBlock& frame, float near, int x, int y, Hit& hit) const;
 
+  /// Returns whether what see() finds lies between the camera's near plane, at `near`, and `origin`, which
+  /// pixel (x, y) shows, lies behind that plane and is clear of surfaces.
+  bool hidden(const glsl::FrameBlock& frame, float near, int x, int y, const glm::vec3& origin) const;
+
   /// Finds the nearest surface on origin + t * direction, t > 0, seen from either side, and returns whether
   /// there is one; cut-out texels (of the full-size level) are passed through.
   bool nearest(const glm::vec3& origin, const glm::vec3& direction, Hit& hit) const;
