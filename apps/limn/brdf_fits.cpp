@@ -81,11 +81,21 @@ brdf::FitSettings settingsOf(const Kind& kind, const BrdfFitsArguments& options)
 }
 
 /// What is asked for: one fit, or all kinds, with the coordinates and terms that they are compared with.
+/// Throws UsageError for more texels than svd takes, where it is the one fit; among all kinds it has as many
+/// as it takes.
 std::vector<brdf::FitSettings> settingsOf(const BrdfFitsArguments& options) {
-  if (!options.kind.empty()) return {settingsOf(rowNamed(kKinds, options.kind, "--fit"), options)};
+  if (!options.kind.empty()) {
+    const Kind& kind = rowNamed(kKinds, options.kind, "--fit");
+    if (kind.factorisation == Factorisation::svd && options.texels > brdf::kMostSvdTexels)
+      throw UsageError(fmt::format("--texels {} is not accepted with --fit svd, which takes 2 to {}",
+                                   options.texels, brdf::kMostSvdTexels));
+    return {settingsOf(kind, options)};
+  }
   std::vector<brdf::FitSettings> all;
   for (const Kind& kind : kKinds) {
     all.push_back(settingsOf(kind, options));
+    if (kind.factorisation == Factorisation::svd)
+      all.back().texels = std::min(all.back().texels, brdf::kMostSvdTexels);
     if (kind.factorisation == Factorisation::pqp_disc && !options.noWarp) {
       all.push_back(all.back());
       all.back().warped = false;
@@ -104,7 +114,7 @@ std::vector<glm::dvec3> albedosOf(const brdf::Response& response, bool isotropic
   for (int azimuth = 0; azimuth < (isotropic ? 1 : 8); ++azimuth)
     for (const int degrees : {0, 20, 40, 60, 75, 85})
       albedos.push_back(
-          brdf::directionalAlbedo(response, brdf::directionAt(degrees, azimuth * std::numbers::pi / 4)));
+          brdf::albedoOfResponse(response, brdf::directionAt(degrees, azimuth * std::numbers::pi / 4)));
   return albedos;
 }
 
@@ -199,7 +209,9 @@ std::function<int()> addBrdfFit(CLI::App& command) {
   auto options = std::make_shared<BrdfFitsArguments>();
   options->choice.addTo(command);
   command.add_option("--fit", options->kind, "Kind of fit, see below; without it all kinds");
-  command.add_option("--texels", options->texels, "Texels along an axis of a factor")
+  command
+      .add_option("--texels", options->texels,
+                  fmt::format("Texels along an axis of a factor; svd has {} at most", brdf::kMostSvdTexels))
       ->check(CLI::Range(2, 512));
   command.add_option("--terms", options->terms, "Products that svd takes the sum of")
       ->check(CLI::Range(1, 16));

@@ -43,7 +43,7 @@ std::vector<AlbedoRow> albedosOf(const BrdfSource& source) {
     for (const int angle : kAlbedoAngles)
       rows.push_back(
           {angle, azimuth,
-           brdf::directionalAlbedo(response, brdf::directionAt(angle, azimuth * std::numbers::pi / 180))});
+           brdf::albedoOfResponse(response, brdf::directionAt(angle, azimuth * std::numbers::pi / 180))});
   }
   return rows;
 }

@@ -6,6 +6,9 @@
 
 namespace limn::brdf {
 
+/// The most texels along an axis that svd takes: its matrix has their fourth power of entries.
+inline constexpr int kMostSvdTexels = 48;
+
 struct FitSettings {
   /// What the BRDF becomes a product of. `tables` is the dfg fit with D and F baked into one table and both G
   /// into the other: two look-ups and no exponential.
@@ -27,8 +30,8 @@ struct FitSettings {
 /// Returns the fit, with its error over a picture of 128 x 128 pixels under lights that nothing was fitted or
 /// chosen by (refinement looks at samples, the floor is kept by a picture under other lights). A fit whose
 /// largest directional albedo is above 1 is divided by it. Throws UsageError for settings out of range (less
-/// than 2 texels, no term), and Error where there is nothing to fit: no function, no finite value, or 0
-/// everywhere.
+/// than 2 texels, more than svd takes, no term), and Error where there is nothing to fit: no function, no
+/// finite value, or 0 everywhere.
 LIMN_API FactoredBrdf fitBrdf(const Brdf& brdf, const FitSettings& settings);
 
 /// Returns a fit of kind dfg or pqp as two tables of `texels` x `texels`, with the same scale and floor.

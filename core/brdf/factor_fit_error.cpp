@@ -59,7 +59,7 @@ double SpherePicture::errorOf(const Response& approximation) const {
   return power_ > 0 ? std::sqrt(sum / power_) : std::numeric_limits<double>::infinity();
 }
 
-dvec3 directionalAlbedo(const Response& response, const dvec3& v) {
+dvec3 albedoOfResponse(const Response& response, const dvec3& v) {
   constexpr int kAlong = 96, kAround = 64;
   // The half vector at sqrt(1 - n.h) = t^2: strata crowd around n, where lobes are. d(omega_h) = 2 q dq
   // d(azimuth) with q = t^2, and d(omega_l) = 4 v.h d(omega_h).
@@ -84,7 +84,7 @@ double largestAlbedo(const Response& response, bool isotropic) {
   for (int azimuth = 0; azimuth < (isotropic ? 1 : 8); ++azimuth)
     for (int degrees = 0; degrees <= 88; degrees += 8) {
       const double theta = degrees * std::numbers::pi / 180, phi = azimuth * std::numbers::pi / 4;
-      const dvec3 albedo = directionalAlbedo(
+      const dvec3 albedo = albedoOfResponse(
           response, {std::sin(theta) * std::cos(phi), std::sin(theta) * std::sin(phi), std::cos(theta)});
       largest = std::max({largest, albedo.x, albedo.y, albedo.z});
     }

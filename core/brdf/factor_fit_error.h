@@ -35,9 +35,11 @@ class LIMN_API SpherePicture {
   double power_ = 0;  // sum of squares of the exact picture
 };
 
-/// Returns the share of the light from a uniform environment that is reflected to v: the integral of
-/// `response` over l, by a rule in the half vector that resolves lobes down to a width of about 0.02.
-LIMN_API glm::dvec3 directionalAlbedo(const Response& response, const glm::dvec3& v);
+/// Returns the directional albedo of a response per channel, the share of the light from a uniform
+/// environment that is reflected to v: the integral of `response`, which has the cosine unlike what
+/// albedoOfBrdf() takes, over l, by a rule in the half vector that resolves lobes down to a width of about
+/// 0.02.
+LIMN_API glm::dvec3 albedoOfResponse(const Response& response, const glm::dvec3& v);
 
 /// Returns the largest directional albedo of any channel, over views from head-on to 88 degrees at eight
 /// azimuths around the normal, as no symmetry is taken for granted (one where the response is `isotropic`).

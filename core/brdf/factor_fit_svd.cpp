@@ -15,7 +15,6 @@ namespace {
 using glm::dvec2;
 using glm::dvec3;
 
-constexpr int kMostTexels = 48;  // the matrix has their fourth power of entries
 constexpr int kRounds = 60;
 
 /// The directions of a disc's texels (see factored_disc_place); beyond the rim that of the rim.
@@ -182,9 +181,9 @@ void spreadLayers(FactorTable& table, const std::vector<char>& known) {
 }  // namespace
 
 FactoredBrdf fitSvd(const Brdf& brdf, const FitSettings& settings, const dvec3& floor) {
-  if (settings.texels > kMostTexels)
-    throw UsageError(
-        fmt::format("svd has {} texels along an axis: 2 to {} are possible", settings.texels, kMostTexels));
+  if (settings.texels > kMostSvdTexels)
+    throw UsageError(fmt::format("svd has {} texels along an axis: 2 to {} are possible", settings.texels,
+                                 kMostSvdTexels));
   const std::vector<dvec3> halves = discDirections(settings.texels, true);
   const std::vector<dvec3> differences = discDirections(settings.texels, false);
   const std::size_t side = halves.size();

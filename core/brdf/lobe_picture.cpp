@@ -87,7 +87,7 @@ class Furnace {
   Furnace(const Response& response, double azimuth) {
     for (int degrees = 0; degrees <= 90; degrees += kFurnaceStep)
       albedos_.push_back(
-          directionalAlbedo(response, directionAt(std::min<double>(degrees, kLastView), azimuth)));
+          albedoOfResponse(response, directionAt(std::min<double>(degrees, kLastView), azimuth)));
   }
   dvec3 at(double degrees) const {
     const double place = std::clamp(degrees, 0.0, 90.0) / kFurnaceStep;
@@ -159,7 +159,7 @@ double reciprocityDefect(const Brdf& brdf) {
     for (int azimuth = 0; azimuth < 4; ++azimuth) {
       const dvec3 view = directionAt(degrees, azimuth * std::numbers::pi / 4 + 0.1);
       const double weight = view.z * std::sqrt(1 - view.z * view.z);
-      const dvec3 sums = directionalAlbedo(
+      const dvec3 sums = albedoOfResponse(
           [&](const dvec3& l, const dvec3& v) {
             const dvec3 there = brdf(l, v), difference = there - brdf(v, l);
             return dvec3(glm::dot(difference, difference), glm::dot(there, there), 0) * l.z;

@@ -36,7 +36,7 @@ MeasuredModel measure(const BrdfFunction& f, int azimuths) {
     for (int j = 0; j < azimuths; ++j) {
       const float azimuth = 2 * glsl::pi * static_cast<float>(j) / static_cast<float>(azimuths);
       const glm::dvec3 share =
-          albedo(f, {sine * std::cos(azimuth), sine * std::sin(azimuth), cosine}, kSteps);
+          albedoOfBrdf(f, {sine * std::cos(azimuth), sine * std::sin(azimuth), cosine}, kSteps);
       out.largestAlbedo =
           std::max(out.largestAlbedo, static_cast<float>(std::max({share.x, share.y, share.z})));
       mean += share / static_cast<double>(kViews * azimuths);

@@ -173,7 +173,7 @@ AnisotropicTable tabulateReciprocal(int size, const BrdfFunction& f) {
   return table;
 }
 
-glm::dvec3 albedo(const BrdfFunction& f, const glm::vec3& v, int steps) {
+glm::dvec3 albedoOfBrdf(const BrdfFunction& f, const glm::vec3& v, int steps) {
   glm::dvec3 sum(0);
   if (!(v.z > 0)) return sum;
   constexpr double pi = std::numbers::pi;

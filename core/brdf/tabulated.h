@@ -92,9 +92,10 @@ LIMN_API AnisotropicTable tabulateAnisotropic(int size, const BrdfFunction& f);
 /// than kLargestValue or no number. Throws Error where both are.
 LIMN_API AnisotropicTable tabulateReciprocal(int size, const BrdfFunction& f);
 
-/// Returns the share of the light that arrives from v and is reflected anywhere, per channel: the integral of
-/// f(l, v) cos(l), by steps x steps midpoints over the half vectors, whose polar angle grows with the square
-/// of the step as highlights are narrow. 0 where v lies on or below the horizon.
-LIMN_API glm::dvec3 albedo(const BrdfFunction& f, const glm::vec3& v, int steps = 128);
+/// Returns the directional albedo of a BRDF per channel, the share of the light from v that it reflects: the
+/// integral of f(l, v) cos(l) over l, by steps x steps midpoints over the half vectors, whose polar angle
+/// grows with the square of the step as highlights are narrow. 0 where v lies on or below the horizon. The
+/// cosine is applied here; albedoOfResponse() takes functions that have it.
+LIMN_API glm::dvec3 albedoOfBrdf(const BrdfFunction& f, const glm::vec3& v, int steps = 128);
 
 }  // namespace limn::brdf

@@ -18,6 +18,11 @@ double largestSide(const HeightField& field) {
   return std::max(side.x, side.y);
 }
 
+/// Returns the texels along the longer axis.
+int largestSize(const HeightField& field) {
+  return std::max(field.size().x, field.size().y);
+}
+
 /// Returns the largest (z(s) - level) / s over a cell, z = constant + linear s + square s^2 - level.
 double steepestSight(double constant, double linear, double square, double enter, double leave) {
   const auto slope = [&](double s) { return constant / s + linear + square * s; };
@@ -63,7 +68,7 @@ class Sweep {
     metres_ = 1 / std::abs(direction_[major_]);
     length_ = field.size()[major_];
     const double reach = std::min(64 * (field.highest() - field.lowest()), 8 * largestSide(field));
-    ahead_ = static_cast<int>(std::ceil(reach / metres_)) + 1;
+    ahead_ = static_cast<int>(std::ceil(std::min(reach / metres_, 8.0 * largestSize(field)))) + 1;
     // Lines are numbered by where they meet the first texel of their way; periodic ones return after one
     // size.
     const double shift = tilt_ * (length_ - 1);

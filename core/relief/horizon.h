@@ -32,7 +32,8 @@ struct LIMN_API Horizons {
 /// Self-Shadowing): a time per azimuth that is proportional to the texels, but for the logarithm of a search
 /// in the hull. Texels between two lines get the mean of what they see in both; the two texels next to them
 /// are looked at exactly. Lines begin where what they leave out rises by less than 1/64 above any texel, but
-/// at most 8 sizes of the map ahead. Throws UsageError for less than one azimuth.
+/// at most 8 sizes of the map ahead, of the longer side in metres and of the longer axis in texels. Throws
+/// UsageError for less than one azimuth.
 LIMN_API Horizons sweepHorizons(const HeightField& field, int azimuths);
 
 }  // namespace limn::relief

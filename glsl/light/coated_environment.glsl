@@ -3,6 +3,7 @@
 #ifndef LIMN_COATED_ENVIRONMENT_GLSL
 #define LIMN_COATED_ENVIRONMENT_GLSL
 #include "glsl/materials/coated.glsl"
+#include "glsl/numeric/geometry.glsl"
 #include "glsl/surface/reflected_parts.glsl"
 LIMN_BEGIN
 
@@ -31,6 +32,13 @@ LIMN_FN ReflectedParts coated_environment(MaterialModel m, float n_dot_v, vec3 i
   light.diffuse = coated_environment_base(m, n_dot_v, irradiance, grazing);
   light.lobe = n_dot_v > 0.0f ? coated_mirror(m, n_dot_v) * mirrored : vec3(0.0f);
   return light;
+}
+
+// The same of a surface with the geometric normal ng, from below whose plane nothing is mirrored.
+LIMN_FN ReflectedParts coated_environment(MaterialModel m, vec3 n, vec3 ng, vec3 v, vec3 irradiance, vec3 grazing,
+                                          vec3 mirrored) {
+  bool above = dot(ng, mirror_direction(n, v)) > 0.0f;
+  return coated_environment(m, dot(n, v), irradiance, grazing, above ? mirrored : vec3(0.0f));
 }
 
 LIMN_END

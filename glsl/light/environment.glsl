@@ -14,8 +14,6 @@
 #include "glsl/surface/reflected_parts.glsl"
 LIMN_BEGIN
 
-LIMN_CONST int environment_unit_irradiance = 9;
-LIMN_CONST int environment_unit_filtered = 10;
 LIMN_CONST int environment_irradiance_width = 64;  // texels; the height is half of it
 LIMN_CONST int environment_filtered_width = 512;   // of level 0
 LIMN_CONST int environment_levels = 6;

@@ -105,7 +105,7 @@ LIMN_CONST int prefiltered_lookup_uncut = 3;         // as mirror, with Phong's 
 // Direction in which a GGX lobe looks into the map of its width: unit. terms: of n.v and alpha.
 LIMN_FN vec3 prefiltered_direction(int lookup, LtcTerms terms, vec3 n, vec3 v, float alpha) {
   if (lookup == prefiltered_lookup_centroid) return environment_lobe_direction(terms, n, v, alpha);
-  vec3 mirror = 2.0f * dot(n, v) * n - v;
+  vec3 mirror = mirror_direction(n, v);
   if (lookup != prefiltered_lookup_normal_drawn) return mirror;
   vec3 drawn = mix(mirror, n, alpha * alpha);
   float size = length(drawn);

@@ -58,8 +58,6 @@ struct PrefilteredLobe {
   vec3 reflectance;
 };
 
-LIMN_FN vec3 prefiltered_mirror(vec3 n, vec3 v) { return 2.0f * dot(n, v) * n - v; }
-
 // As environment_lobe_share(), of a power lobe.
 LIMN_FN float prefiltered_lobe_share(PrefilteredLobe lobe, vec3 n, vec3 ng) {
   float p = power_lobe_exponent(lobe.alpha);
@@ -73,7 +71,7 @@ LIMN_FN PrefilteredLobe phong_prefiltered_lobe(MaterialModel m, int lookup, vec3
   float n_dot_v = dot(n, v);
   PhongPart part = phong_above_horizon(n_dot_v, m.exponent);
   PrefilteredLobe lobe;
-  lobe.towards = prefiltered_mirror(n, v);
+  lobe.towards = mirror_direction(n, v);
   lobe.alpha = power_lobe_alpha(m.exponent);
   lobe.reflectance = lookup == prefiltered_lookup_uncut ? m.ks : m.ks * part.share;
   vec3 across = n - n_dot_v * lobe.towards;
@@ -146,7 +144,7 @@ LIMN_FN float microfacet_lobe_alpha(MaterialModel m) {
 // entry: of n.v and microfacet_lobe_alpha(). Looked up along the mirror direction or at the lobe's middle.
 LIMN_FN PrefilteredLobe microfacet_prefiltered_lobe(MaterialModel m, MicrofacetLobe entry, int lookup, vec3 n, vec3 v) {
   PrefilteredLobe lobe;
-  lobe.towards = prefiltered_mirror(n, v);
+  lobe.towards = mirror_direction(n, v);
   lobe.alpha = microfacet_lobe_alpha(m);
   lobe.reflectance = m.ks * fresnel(entry.cosine, m.eta, m.k) * entry.reflectance;
   float sine = length(cross(n, v));

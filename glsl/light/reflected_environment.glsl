@@ -16,20 +16,6 @@ vec3 grazing_light(vec3 n) {
 }
 #endif
 
-#if (MATERIAL_MODELS & 32) != 0
-ReflectedParts coated_reflection(MaterialModel m, vec3 n, vec3 ng, vec3 v) {
-  float n_dot_v = dot(n, v);
-  vec3 irradiance = environment_irradiance_towards(n, frame.environment_rotation, frame.environment_scale);
-  vec3 mirror = 2.0 * n_dot_v * n - v;
-  vec3 mirrored = vec3(0.0);
-  if (dot(ng, mirror) > 0.0) {
-    vec3 direction = environment_lookup_direction(mirror, frame.environment_rotation);
-    mirrored = frame.environment_scale * environment_filtered_level(direction, 0);
-  }
-  return coated_environment(m, n_dot_v, irradiance, grazing_light(n), mirrored);
-}
-#endif
-
 // n, ng: shading and geometric normal: lobes have no light from below the horizon of the latter; v: unit, towards the viewer.
 ReflectedParts reflected_environment(SurfaceMaterial own, vec3 n, vec3 ng, vec3 v) {
 #if (MATERIAL_MODELS & 128) != 0
@@ -39,7 +25,12 @@ ReflectedParts reflected_environment(SurfaceMaterial own, vec3 n, vec3 ng, vec3 
 #else
   SurfaceBrdf material = own.brdf;
 #if (MATERIAL_MODELS & 32) != 0
-  if (own.model.kind == model_coated) return coated_reflection(own.model, n, ng, v);
+  if (own.model.kind == model_coated) {
+    vec3 irradiance = environment_irradiance_towards(n, frame.environment_rotation, frame.environment_scale);
+    vec3 mirror = environment_lookup_direction(mirror_direction(n, v), frame.environment_rotation);
+    vec3 mirrored = frame.environment_scale * environment_filtered_level(mirror, 0);
+    return coated_environment(own.model, n, ng, v, irradiance, grazing_light(n), mirrored);
+  }
 #endif
 #if MATERIAL_MODELS
   if (has_model(own)) material = nearest_brdf(own);

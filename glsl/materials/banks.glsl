@@ -89,6 +89,9 @@ LIMN_FN float banks_pdf(MaterialModel m, vec3 v, vec3 l) {
   return (1.0f - share) * cosine_pdf(l.z) + share * cone;
 }
 
+// Hemispherical reflectance of kd alone.
+LIMN_FN vec3 banks_diffuse_albedo(MaterialModel m) { return min(banks_diffuse_integral * m.kd, vec3(1.0f)); }
+
 // Hemispherical reflectance. A narrow lobe of Stalling et al. reflects twice its integral times 1 - (v.t)^2, of which the mean is
 // 3/4. The printed one is narrow both ways, and its reflectance is a fit, within 3 %.
 LIMN_FN vec3 banks_albedo(MaterialModel m) {

@@ -147,7 +147,7 @@ LIMN_FN vec3 model_diffuse_response(MaterialModel m, vec3 l) {
 }
 LIMN_FN vec3 model_diffuse_albedo(MaterialModel m) {
 #if (MATERIAL_MODELS & 8) != 0
-  if (m.kind == model_banks) return min(banks_diffuse_integral * m.kd, vec3(1.0f));
+  if (m.kind == model_banks) return banks_diffuse_albedo(m);
 #endif
   return m.kd;
 }

@@ -66,15 +66,28 @@ LIMN_FN EdgeDistance ellipse_edge(ReliefEllipse e, vec2 place) {
   return edge;
 }
 
-// Share of a round light, whose angular radius has the given sine, that the texel sees: its projection is cut by a straight
-// edge.
+// Share of a disc of radius 1 on one side of a straight edge: the side of the centre where its distance, `inside`, is above 0.
+LIMN_FN float disc_inside_edge(float inside) {
+  float x = clamp(inside, -1.0f, 1.0f);
+  return 0.5f + (asin(x) + x * sqrt(1.0f - x * x)) * inverse_pi;
+}
+
+// Share that the texel sees of a round light, whose angular radius has the given sine: of the part above the base's plane. That
+// plane and the ellipse's edge cut the light as great circles do, at their angles from its centre. The angle of the edge is the
+// difference of two from `outwards`, a direction in the plane: of the light's centre, and of the edge, which to first order lies
+// at their cosine plus `inside`. For ellipses about the zenith that is no approximation, so that level fields hide nothing.
 LIMN_FN float ellipse_visibility(ReliefEllipse e, vec3 l, float sine) {
   EdgeDistance edge = ellipse_edge(e, vec2(l));
-  float outwards = dot(edge.outwards, vec2(l));
-  float radius = sine * sqrt(max(1.0f - outwards * outwards, 0.0f));
-  float x = clamp(edge.inside / max(radius, 1e-6f), -1.0f, 1.0f);
-  float part = 0.5f + (asin(x) + x * sqrt(1.0f - x * x)) * inverse_pi;
-  return l.z > 0.0f ? part : 0.0f;
+  vec2 o = edge.outwards;
+  float light_cosine = dot(o, vec2(l));
+  float light_sine = length(vec2(l.z, o.x * l.y - o.y * l.x));
+  float edge_cosine = clamp(light_cosine + edge.inside, -1.0f, 1.0f);
+  float edge_sine = sqrt(1.0f - edge_cosine * edge_cosine);
+  float radius = max(sine, 1e-6f);
+  float inside = (light_sine * edge_cosine - light_cosine * edge_sine) / radius;
+  bool near = light_cosine * edge_cosine + light_sine * edge_sine > 0.0f;  // by less than a right angle
+  if (!near) inside = edge.inside > 0.0f ? 1.0f : -1.0f;
+  return l.z > 0.0f ? min(disc_inside_edge(inside) / disc_inside_edge(l.z / radius), 1.0f) : 0.0f;
 }
 
 // Share of the texels of a mean that see the direction: edges are spread over 3.4 deviations.

@@ -177,7 +177,7 @@ class Passes {
       pass.read(inputs_.bodyAlbedo, Access::sampled, "body_albedo", "what leaves bumps that light enters");
     if (flatBases) pass.read(basesOfInstances_, Access::storageLoad, "BasesOfInstances", "which are flat");
     std::map<std::string, std::string> defines{
-        {"MATERIAL_MODELS", scene.models ? "1" : "0"},
+        {"MATERIAL_MODELS", fmt::format("{}", scene.models ? scene.modelKinds : 0u)},
         {"VISIBILITY", visibility ? "1" : "0"},
         {"FLAT_BASES", flatBases ? "1" : "0"},
         {"ENTERING", inputs_.bodyAlbedo ? "1" : "0"},

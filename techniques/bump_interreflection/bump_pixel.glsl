@@ -1,4 +1,5 @@
 // What a pass that adds light from bump to bump asks of a pixel. ENTERING 1: the light that enters translucent bumps is asked for.
+// MATERIAL_MODELS: bit 1 << kind of each model of the scene; 0: the program knows metallic-roughness alone.
 #ifndef BUMP_PIXEL_GLSL
 #define BUMP_PIXEL_GLSL
 #include "glsl/light/light_centre.glsl"
@@ -9,6 +10,12 @@
 #include "glsl/surface/brdf.glsl"
 #if MATERIAL_MODELS
 #include "glsl/materials/material_model.glsl"
+#if (MATERIAL_MODELS & 8) != 0
+#include "glsl/materials/banks.glsl"
+#endif
+#if (MATERIAL_MODELS & 32) != 0
+#include "glsl/materials/coated.glsl"
+#endif
 
 layout(std430) readonly buffer MaterialModels { MaterialModel material_models[]; };  // of each material
 #endif
@@ -26,12 +33,18 @@ layout(std430) readonly buffer BasesOfInstances { uint bases_of_instances[]; };
 uniform sampler2D body_albedo;
 #endif
 
-// Albedo of a pixel's Lambertian part; 0 of specular surfaces, which take no indirect light.
+// Albedo of a pixel's diffuse part, under a coat as well; 0 of specular surfaces, which take no indirect light.
 vec3 pixel_albedo(ivec2 pixel) {
   GBufferSurface s = pixel_surface(pixel);
   if ((s.flags & gbuffer_flag_specular) != 0u) return vec3(0.0);
 #if MATERIAL_MODELS
   MaterialModel model = material_models[instances[pixel_instance(pixel)].material];
+#if (MATERIAL_MODELS & 8) != 0
+  if (model.kind == model_banks) return banks_diffuse_albedo(model);
+#endif
+#if (MATERIAL_MODELS & 32) != 0
+  if (model.kind == model_coated) return coated_albedo(model);
+#endif
   if (model.kind != model_none) return model.kd;
 #endif
   SurfaceBrdf brdf =

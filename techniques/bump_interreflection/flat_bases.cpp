@@ -2,6 +2,8 @@
 
 #include <cmath>
 
+#include "core/scene/draw_instance.h"
+
 namespace limn::bump_interreflection {
 namespace {
 
@@ -23,13 +25,6 @@ bool isFlat(const scene::Primitive& primitive) {
   return true;
 }
 
-/// Returns null for geometry of a source, which may be another one in each frame.
-const scene::Primitive* primitiveOf(const scene::Scene& scene, const scene::DrawInstance& instance) {
-  if (instance.node == scene::kNone) return nullptr;
-  return &scene.meshes[static_cast<size_t>(instance.mesh)]
-              .primitives[static_cast<size_t>(instance.primitive)];
-}
-
 }  // namespace
 
 FlatBases flatBases(const scene::Scene& scene, const scene::Pose& pose) {
@@ -37,22 +32,21 @@ FlatBases flatBases(const scene::Scene& scene, const scene::Pose& pose) {
   result.ofInstances.assign(pose.instances.size(), glsl::no_instance);
   for (size_t i = 0; i < pose.instances.size(); ++i) {
     const scene::DrawInstance& instance = pose.instances[i];
-    const scene::Primitive* const primitive = primitiveOf(scene, instance);
-    const int material =
-        primitive ? primitive->material : scene.dynamic[static_cast<size_t>(instance.mesh)].material;
-    const int height = scene.materials[static_cast<size_t>(material)].height;
+    const int height = scene::materialOf(scene, instance).height;
     if (height == scene::kNone) continue;
-    if (!primitive || instance.deformed != scene::kNone || !isFlat(*primitive)) {
+    const scene::Primitive& primitive = scene::primitiveOf(scene, pose, instance);
+    // Geometry of a source may be another one in each frame.
+    if (instance.node == scene::kNone || instance.deformed != scene::kNone || !isFlat(primitive)) {
       result.curved = true;
       continue;
     }
     result.ofInstances[i] = static_cast<uint32_t>(result.bases.size());
-    result.bases.push_back({.tangent = glm::vec3(primitive->tangents.front()),
+    result.bases.push_back({.tangent = glm::vec3(primitive.tangents.front()),
                             .instance = static_cast<uint32_t>(i),
-                            .normal = primitive->normals.front(),
+                            .normal = primitive.normals.front(),
                             .height = height,
                             // The bitangent of normal maps points up the texture, against v.
-                            .left_handed = primitive->tangents.front().w >= 0 ? 1u : 0u,
+                            .left_handed = primitive.tangents.front().w >= 0 ? 1u : 0u,
                             .first = static_cast<uint32_t>(result.texels),
                             .unused_0 = 0,
                             .unused_1 = 0});

@@ -1,5 +1,5 @@
 // Adds the light of the environment that surfaces reflect, unoccluded (V = 1): lookups in the prefiltered maps. MEDIUM 1: times
-// the medium's transmittance along the normal.
+// the medium's transmittance along the normal. GGX_LOBES 0: metallic-roughness surfaces are Lambertian.
 #include "glsl/surface/surface_response.glsl"
 #include "glsl/light/prefiltered.glsl"
 #if MATERIAL_MODELS
@@ -14,12 +14,14 @@ layout(local_size_x = 8, local_size_y = 8) in;
 layout(rgba32f) uniform image2D radiance;
 uniform sampler2DArray irradiance_map;  // W/m^2 on surfaces that face the direction
 uniform sampler2DArray sharp_map;       // level 0: radiance
-uniform sampler2DArray filtered_map;    // filtered for the widths of environment_level() 1, 2, ...
 
 vec3 irradiance_towards(vec3 n) {
   vec3 direction = environment_lookup_direction(n, frame.environment_rotation);
   return frame.environment_scale * prefiltered_lookup(irradiance_map, direction, 0);
 }
+
+#if GGX_LOBES
+uniform sampler2DArray filtered_map;  // filtered for the widths of environment_level() 1, 2, ...
 
 // Radiance around `towards`, filtered by a GGX lobe of that width.
 vec3 filtered_radiance(vec3 towards, float alpha) {
@@ -31,15 +33,20 @@ vec3 filtered_radiance(vec3 towards, float alpha) {
   vec3 wider = prefiltered_lookup(filtered_map, direction, low);
   return frame.environment_scale * mix(sharper, wider, level - float(low));
 }
+#endif
 
 // Radiance that a metallic-roughness surface reflects towards v. n, ng: shading and geometric normal, here and below.
 vec3 brdf_reflection(SurfaceBrdf s, vec3 n, vec3 ng, vec3 v) {
   vec3 irradiance = irradiance_towards(n);
+#if GGX_LOBES
   if (brdf_is_lambertian(s)) return s.diffuse * irradiance * inverse_pi;
   LtcTerms terms = ltc_lookup(dot(n, v), s.alpha);
   vec3 towards = prefiltered_direction(LOOKUP, terms, n, v, s.alpha);
   vec3 filtered = environment_lobe_share(terms, n, ng, v, s.alpha) * filtered_radiance(towards, s.alpha);
   return reflected_whole(environment_reflection(s, terms, irradiance, filtered));
+#else
+  return s.diffuse * irradiance * inverse_pi;
+#endif
 }
 
 #if (MATERIAL_MODELS & 22) != 0
@@ -76,18 +83,6 @@ vec3 grazing_light(vec3 n) {
 }
 #endif
 
-#if (MATERIAL_MODELS & 32) != 0
-vec3 coated_reflection(MaterialModel m, vec3 n, vec3 ng, vec3 v) {
-  vec3 mirror = prefiltered_mirror(n, v);
-  vec3 mirrored = vec3(0.0);
-  if (dot(ng, mirror) > 0.0) {
-    vec3 direction = environment_lookup_direction(mirror, frame.environment_rotation);
-    mirrored = frame.environment_scale * prefiltered_lookup(sharp_map, direction, 0);
-  }
-  return reflected_whole(coated_environment(m, dot(n, v), irradiance_towards(n), grazing_light(n), mirrored));
-}
-#endif
-
 #if MATERIAL_MODELS
 // Radiance that a surface with a model reflects towards v; of the kinds without an answer below it is that of the
 // metallic-roughness surface next to it.
@@ -108,7 +103,11 @@ vec3 model_reflection(SurfaceMaterial s, vec3 n, vec3 ng, vec3 v) {
     return m.kd * irradiance_towards(n) * inverse_pi + lobe_radiance(phong_prefiltered_lobe(m, LOOKUP, n, v), n, ng);
 #endif
 #if (MATERIAL_MODELS & 32) != 0
-  if (m.kind == model_coated) return coated_reflection(m, n, ng, v);
+  if (m.kind == model_coated) {
+    vec3 mirror = environment_lookup_direction(mirror_direction(n, v), frame.environment_rotation);
+    vec3 mirrored = frame.environment_scale * prefiltered_lookup(sharp_map, mirror, 0);
+    return reflected_whole(coated_environment(m, n, ng, v, irradiance_towards(n), grazing_light(n), mirrored));
+  }
 #endif
 #if (MATERIAL_MODELS & 128) != 0
   return inverse_pi * entering_irradiance(m, vec3(1.0) - m.kd, irradiance_towards(n), grazing_light(n));

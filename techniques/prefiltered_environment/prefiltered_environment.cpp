@@ -68,7 +68,28 @@ constexpr uint32_t kEnteredKinds = 1u << glsl::model_coated | 1u << glsl::model_
 enum class Irradiance { whole, grazing };  ///< grazing: weighted by Schlick's (1 - cosine)^5
 enum class Lobes { ggx, power };
 
-/// Holds what surfaces look up; empty: no material of the scene needs it.
+/// Says what the surfaces of a request look up beside the irradiance.
+struct Needs {
+  bool ggx = false;  ///< radiance filtered with GGX lobes, and the table of their reflectance
+  bool power = false, microfacets = false, grazing = false;
+  bool sharp = false;  ///< the radiance itself
+};
+
+Needs needsOf(const TechniqueInputs& inputs) {
+  const uint32_t kinds = inputs.handles.modelKinds;
+  Needs needs{.power = (kinds & kLobeKinds) != 0,
+              .microfacets = (kinds & kMicrofacetKinds) != 0,
+              .grazing = (kinds & kEnteredKinds) != 0};
+  // What enters translucent surfaces is asked for without any other.
+  if ((kinds & 1u << glsl::model_entry) == 0)
+    needs.ggx = std::ranges::any_of(inputs.scene.materials, [](const scene::Material& m) {
+      return m.model ? m.model->kind == glsl::model_measured : !m.lambertian() && !m.specularSurface();
+    });
+  needs.sharp = needs.ggx || needs.power || (kinds & 1u << glsl::model_coated) != 0;
+  return needs;
+}
+
+/// Holds what surfaces look up; empty: none has needed it so far.
 struct Maps {
   TextureHandle sharp, irradiance, filtered;
   TextureHandle power, microfacetLobes, grazing;
@@ -76,6 +97,7 @@ struct Maps {
 
 class PrefilteredEnvironment : public Technique {
   gpu::Sampler sampler_;  ///< bilinear within a level, repeated around the horizon
+  Maps maps_;             ///< of all requests: what enters translucent surfaces is asked for apart
 
   TextureHandle addPasses(frame::FrameGraph& graph, const TechniqueInputs& inputs,
                           const TermRequest& request) override {
@@ -85,20 +107,27 @@ class PrefilteredEnvironment : public Technique {
     }
     if (!sampler_)
       sampler_ = gpu::Sampler(inputs.gpuScene.device(), GL_LINEAR_MIPMAP_NEAREST, GL_LINEAR, GL_REPEAT);
+    const Needs needs = needsOf(inputs);
+    addMaps(graph, inputs, needs);
+    return addReflection(graph, inputs, request.target, needs);
+  }
+
+  /// Declares the passes of the maps that are needed and that no earlier request has had declared.
+  void addMaps(frame::FrameGraph& graph, const TechniqueInputs& inputs, const Needs& needs) {
     const Filtering filtering(graph, inputs.parameters, sampler_);
     const scene::Environment& picture = inputs.scene.environment;
     const TextureHandle environment = inputs.service<shading_maps::ShadingMapService>().radianceLevels();
-    const TextureHandle chain = filtering.addChain(environment, picture.width);
-    Maps maps;
-    maps.sharp = chain;
-    maps.irradiance = filtering.addIrradiance(environment, picture.height, Irradiance::whole);
-    maps.filtered = filtering.addLobes(chain, Lobes::ggx);
-    const uint32_t kinds = inputs.handles.modelKinds;
-    if ((kinds & kLobeKinds) != 0) maps.power = filtering.addLobes(chain, Lobes::power);
-    if ((kinds & kMicrofacetKinds) != 0) maps.microfacetLobes = filtering.addMicrofacetLobes();
-    if ((kinds & kEnteredKinds) != 0)
-      maps.grazing = filtering.addIrradiance(environment, picture.height, Irradiance::grazing);
-    return addReflection(graph, inputs, request.target, maps);
+    const auto make = [](bool needed, TextureHandle& map, const auto& add) {
+      if (needed && !map) map = add();
+    };
+    make(needs.sharp, maps_.sharp, [&] { return filtering.addChain(environment, picture.width); });
+    make(true, maps_.irradiance,
+         [&] { return filtering.addIrradiance(environment, picture.height, Irradiance::whole); });
+    make(needs.ggx, maps_.filtered, [&] { return filtering.addLobes(maps_.sharp, Lobes::ggx); });
+    make(needs.power, maps_.power, [&] { return filtering.addLobes(maps_.sharp, Lobes::power); });
+    make(needs.microfacets, maps_.microfacetLobes, [&] { return filtering.addMicrofacetLobes(); });
+    make(needs.grazing, maps_.grazing,
+         [&] { return filtering.addIrradiance(environment, picture.height, Irradiance::grazing); });
   }
 
   /// Declares the passes that filter the environment; they run again when it changes.
@@ -255,27 +284,29 @@ class PrefilteredEnvironment : public Technique {
   };
 
   TextureHandle addReflection(frame::FrameGraph& graph, const TechniqueInputs& inputs, TextureHandle target,
-                              const Maps& maps) {
+                              const Needs& needs) {
     frame::PassBuilder pass = graph.addPass("environment light", info.name);
     pass.read(inputs.handles.frame, Access::uniformBuffer, "FrameBlock", "camera, rotation, scale");
     const scene::SurfaceInput surfaces(inputs.handles, inputs.gbuffer);
     surfaces.declare(pass);
-    const auto look = [&](TextureHandle map, const char* name, const char* why) {
-      if (map) pass.read(map, Access::sampled, ShaderName(name).sampledWith(&sampler_), why);
+    const auto look = [&](bool needed, TextureHandle map, const char* name, const char* why) {
+      if (needed) pass.read(map, Access::sampled, ShaderName(name).sampledWith(&sampler_), why);
     };
-    look(maps.irradiance, "irradiance_map", "diffuse light");
-    look(maps.sharp, "sharp_map", "light of smooth surfaces");
-    look(maps.filtered, "filtered_map", "glossy light");
-    look(maps.power, "power_map", "light of models' lobes");
-    look(maps.microfacetLobes, "microfacet_lobes", "where models look");
-    look(maps.grazing, "grazing_map", "light that enters coats and bodies");
-    pass.read(inputs.service<shading_maps::ShadingMapService>().ltcTable(), Access::sampled, "ltc_table",
-              "glossy reflectance");
+    look(true, maps_.irradiance, "irradiance_map", "diffuse light");
+    look(needs.sharp, maps_.sharp, "sharp_map", "light of smooth surfaces");
+    look(needs.ggx, maps_.filtered, "filtered_map", "glossy light");
+    look(needs.power, maps_.power, "power_map", "light of models' lobes");
+    look(needs.microfacets, maps_.microfacetLobes, "microfacet_lobes", "where models look");
+    look(needs.grazing, maps_.grazing, "grazing_map", "light that enters coats and bodies");
+    if (needs.ggx)
+      pass.read(inputs.service<shading_maps::ShadingMapService>().ltcTable(), Access::sampled, "ltc_table",
+                "glossy reflectance");
     const TextureHandle radiance =
         pass.write(target, Access::imageLoadStore, "radiance", "light of the environment, V = 1");
     gpu::ProgramDesc desc =
         Filtering(graph, inputs.parameters, sampler_)
             .shader("environment", {{"MEDIUM", inputs.scene.medium.present() ? "1" : "0"},
+                                    {"GGX_LOBES", needs.ggx ? "1" : "0"},
                                     {"LOOKUP", std::to_string(inputs.parameters.choice("lookup"))}});
     surfaces.define(desc.defines);
     const scene::MediumInput medium(inputs.handles);

@@ -104,6 +104,15 @@ TEST_F(BrdfCommand, FitsOfModels) {
     EXPECT_THAT(all.out, HasSubstr(name));
 }
 
+/// svd among all kinds has as many as it takes, and says so.
+TEST_F(BrdfCommand, FitsOfMoreTexelsThanSvdTakes) {
+  const Outcome all =
+      limn({"brdf", "fit", "metal:0.5", "--texels", "49", "--terms", "1", "--no-floor", "--no-refine"});
+  ASSERT_EQ(all.status, 0) << all.err;
+  for (const char* name : {"dfg 49 ", "pqp 49 x 49", "svd 48 x 48, 1 term", "trilinear 49 x "})
+    EXPECT_THAT(all.out, HasSubstr(name));
+}
+
 TEST_F(BrdfCommand, MaterialsOfScenes) {
   const json brushed = printed({"info", "--scene", "disk_and_sphere", "--material", "brushed"});
   EXPECT_EQ(brushed["isotropic"], false);
@@ -139,6 +148,9 @@ TEST_F(BrdfCommand, WrongUsageIsOneLine) {
   expectRefused(limn({"brdf", "fit", "groove", "--format", "byte"}), 2, {"'byte'", "half"});
   expectRefused(limn({"brdf", "fit", "groove", "--texels", "1"}), 2, {"--texels", "2"});
   expectRefused(limn({"brdf", "fit", "groove", "--fit", "svd", "--texels", "60"}), 2, {"60", "48"});
+  // Before the source is read.
+  expectRefused(limn({"brdf", "fit", path("none.bsdf"), "--fit", "svd", "--texels", "49"}), 2,
+                {"--texels 49", "--fit svd", "48"});
   expectRefused(limn({"brdf", "simulate", "groove.png"}), 2, {"groove.png", ".bsdf"});
   for (const char* colour : {"1,2", "0.1,0.2,0.3,", "1.5", "red", "", "-0.1"})
     expectRefused(limn({"brdf", "simulate", path("a.bsdf"), "--rising", colour}), 2,

@@ -48,6 +48,20 @@ TEST_F(BumpHorizonTest, AFlatFieldChangesNoBit) {
         << shape;
 }
 
+/// Whatever part of the light lies above the base: at 2 degrees more than a third of it does not.
+TEST_F(BumpHorizonTest, AFlatFieldHidesNothingOfALightWithASize) {
+  for (const int elevation : {2, 5, 10, 20, 45, 90})
+    for (const char* shape : {"moments", "nearest"}) {
+      const float angle = glm::radians(static_cast<float>(elevation));
+      scene::Scene scene = floorUnder({std::cos(angle), std::sin(angle), 0.3f * std::cos(angle)}, {flat()});
+      scene.lights[0].angle = 2 * std::asin(0.15f);
+      const Image w =
+          drawn(scene, Term::relief, {technique("bump_horizon", {{"shape", shape}, {"soft", "true"}})});
+      forEachPoint(w,
+                   [&](float value, const glm::vec3&) { ASSERT_EQ(value, 1) << shape << ' ' << elevation; });
+    }
+}
+
 TEST_F(BumpHorizonTest, GroovesAreShadowedAsTheClosedFormSays) {
   for (const int axis : {0, 2})
     for (const float sign : {-1.f, 1.f}) {

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <map>
 #include <string>
 #include <utility>
 #include <vector>
@@ -71,23 +72,28 @@ class PrefilteredEnvironmentTest : public RenderTest {
     values.emplace_back("size", "128");
     const int width = kBallSide * static_cast<int>(scene.nodes.size());
     render::Renderer renderer(device(), scene);
-    renderer.configure(
-        settings(width, kBallSide, Term::direct, {technique("prefiltered_environment", values)}));
-    renderer.setCamera(view);
-    renderer.render();
-    return renderer.read();
+    return picture(renderer,
+                   settings(width, kBallSide, Term::direct, {technique("prefiltered_environment", values)}),
+                   view);
+  }
+
+  /// Counts the technique's passes by name.
+  std::map<std::string, int> passesOf(const scene::Scene& scene, Term term = Term::direct) {
+    render::Renderer renderer(device(), scene);
+    picture(renderer, settings(8, 8, term, {technique("prefiltered_environment", {{"size", "128"}})}),
+            camera());
+    std::map<std::string, int> passes;
+    for (const frame::PassReport& pass : renderer.explain())
+      if (pass.technique == "prefiltered_environment") ++passes[pass.name];
+    return passes;
   }
 
   static Image traced(const scene::Scene& scene) {
     const scene::Pose pose = scene::evaluate(scene, 0);
-    reference::Request request{
-        .scene = scene, .pose = pose, .camera = camera(), .progress = {}, .checkpoint = {}};
-    request.width = kBallSide * static_cast<int>(scene.nodes.size());
-    request.height = kBallSide;
-    request.term = Term::direct;
-    request.unshadowed = true;
-    request.spp = 128;
-    return reference::render(request).image.select({"R", "G", "B"});
+    const int width = kBallSide * static_cast<int>(scene.nodes.size());
+    reference::Request asked = test::request(scene, pose, camera(), {width, kBallSide}, Term::direct, 128);
+    asked.unshadowed = true;
+    return reference::render(asked).image.select({"R", "G", "B"});
   }
 
   /// Returns how much more light each quarter of a ball has than in `exact`, over what it has there; the
@@ -151,6 +157,64 @@ TEST_F(PrefilteredEnvironmentTest, EveryModelHasItsLightOfASmoothEnvironment) {
   const Image mirror = drawn(scene, {{"lookup", "mirror"}});
   const std::array<double, 4> along = excess(mirror, exact, 0);
   EXPECT_LT(*std::ranges::min_element(along), -0.02);
+}
+
+/// A GGX lobe of a material that nothing shows has its map all the same, and changes no bit.
+TEST_F(PrefilteredEnvironmentTest, MapsThatNoSurfaceLooksUpAreLeftOut) {
+  glsl::MaterialModel phong = model(glsl::model_phong), coat = model(glsl::model_coated);
+  phong.exponent = 20;
+  coat.options = glsl::model_option_physical;
+  scene::Material matte, glossy, glass;
+  matte.metallic = matte.specularFactor = 0;
+  glossy.metallic = 0;
+  glass.transmission = 1;
+  const auto withModel = [](const glsl::MaterialModel& m) {
+    scene::Material material;
+    scene::setModel(material, m);
+    return material;
+  };
+  const struct {
+    const char* name;
+    scene::Material material;
+    int sharp, ggx, power, grazing;  ///< passes of each kind of map
+  } cases[] = {{"matte", matte, 0, 0, 0, 0},
+               {"glass", glass, 0, 0, 0, 0},
+               {"glossy", glossy, 1, 1, 0, 0},
+               {"phong", withModel(phong), 1, 0, 1, 0},
+               {"banks", withModel(model(glsl::model_banks)), 0, 0, 0, 0},
+               {"coated", withModel(coat), 1, 0, 0, 1}};
+  for (const auto& c : cases) {
+    SCOPED_TRACE(c.name);
+    scene::Scene scene = row({lambert()}, test::environmentOf(64, [](vec3 d) { return vec3(1) + d; }));
+    scene.materials[0] = c.material;
+    std::map<std::string, int> passes = passesOf(scene);
+    EXPECT_EQ(passes["irradiance of the environment"], 1);
+    EXPECT_EQ(passes["resample environment level 0"], c.sharp);
+    EXPECT_EQ(passes["filter environment level 1"], c.ggx);
+    EXPECT_EQ(passes["filter environment with power lobes, level 1"], c.power);
+    EXPECT_EQ(passes["grazing irradiance of the environment"], c.grazing);
+    const Image alone = drawn(scene);
+    test::addMaterial(scene, glossy);
+    EXPECT_EQ(passesOf(scene)["filter environment level 1"], 1);
+    EXPECT_EQ(rmse(drawn(scene), alone), 0);
+  }
+}
+
+/// What the boundary of a body reflects and what enters it are asked for apart, and look into the same maps.
+TEST_F(PrefilteredEnvironmentTest, BodiesHaveTheirMapsFilteredOnce) {
+  scene::Scene scene = row({lambert()}, test::environmentOf(64, [](vec3 d) { return vec3(1) + d; }));
+  scene::Material body;
+  body.metallic = 0;
+  body.subsurface = scene::Subsurface{.extinction = vec3(1e6f), .absorption = vec3(0.1f)};
+  scene.materials[0] = body;
+  std::map<std::string, int> passes = passesOf(scene, Term::final);
+  EXPECT_EQ(passes["environment light"], 1);
+  EXPECT_EQ(passes["environment light 2"], 1);  // the second of a name has its number
+  for (const std::string map : {"irradiance of the environment", "grazing irradiance of the environment",
+                                "resample environment level 0", "filter environment level 1"}) {
+    EXPECT_EQ(passes[map], 1) << map;
+    EXPECT_EQ(passes[map + " 2"], 0) << map;
+  }
 }
 
 /// A small sun on the side of the camera: what faces it has its irradiance, and nothing is brighter than it.

@@ -35,8 +35,8 @@ double albedoError(const Brdf& exact, const FactoredBrdf& fit) {
     const double theta = degrees * std::numbers::pi / 180;
     const dvec3 v(std::sin(theta), 0, std::cos(theta));
     const dvec3 difference =
-        directionalAlbedo(responseOf(fit), v) -
-        directionalAlbedo([&](const dvec3& l, const dvec3& view) { return exact(l, view) * l.z; }, v);
+        albedoOfResponse(responseOf(fit), v) -
+        albedoOfResponse([&](const dvec3& l, const dvec3& view) { return exact(l, view) * l.z; }, v);
     for (int c = 0; c < 3; ++c) worst = std::max(worst, std::abs(difference[c]));
   }
   return worst;
@@ -71,7 +71,7 @@ TEST(FactorFitError, AlbedosOfClosedForms) {
   for (double cosine : {1.0, 0.5, 0.1}) {
     const dvec3 v(std::sqrt(1 - cosine * cosine), 0, cosine);
     const auto lambert = [](const dvec3& l, const dvec3&) { return dvec3(0.8 * l.z / std::numbers::pi); };
-    EXPECT_NEAR(directionalAlbedo(lambert, v).x, 0.8, 2e-3) << cosine;
+    EXPECT_NEAR(albedoOfResponse(lambert, v).x, 0.8, 2e-3) << cosine;
     // A cone of half vectors around n reflects a share of D's projected area: f n.l = D v.h / n.v has no
     // masking.
     TorranceSparrow narrow;
@@ -80,7 +80,7 @@ TEST(FactorFitError, AlbedosOfClosedForms) {
       const dvec3 h = glm::normalize(l + view);
       return dvec3(exactDistribution(narrow, h) / (4 * view.z));
     };
-    EXPECT_NEAR(directionalAlbedo(facets, dvec3(0, 0, 1)).x, 1, 1e-2);
+    EXPECT_NEAR(albedoOfResponse(facets, dvec3(0, 0, 1)).x, 1, 1e-2);
   }
 }
 
@@ -149,8 +149,8 @@ TEST(FactorFit, ReflectsAtMostAllLightToEveryAzimuth) {
   for (int degrees : {0, 40, 80}) {
     const double theta = degrees * std::numbers::pi / 180;
     const dvec3 away(-std::sin(theta), 0, std::cos(theta)), near(std::sin(theta), 0, std::cos(theta));
-    EXPECT_LE(directionalAlbedo(responseOf(fit), away).x, 1.001) << degrees;
-    EXPECT_LE(directionalAlbedo(responseOf(fit), near).x, 1.001) << degrees;
+    EXPECT_LE(albedoOfResponse(responseOf(fit), away).x, 1.001) << degrees;
+    EXPECT_LE(albedoOfResponse(responseOf(fit), near).x, 1.001) << degrees;
   }
 }
 

@@ -68,7 +68,7 @@ TEST(GrooveBrdf, WhiteGrooveReflectsAll) {
   for (const float slope : {0.3f, 0.785f, 1.3f}) {
     const GrooveBrdf white({.slope = slope, .rising = glm::vec3(1), .falling = glm::vec3(1), .strips = 48});
     for (const double theta : {0.0, 0.6, 1.3}) {
-      const glm::dvec3 share = albedo(function(white), glm::vec3(atAngles(theta, 0.4)), 96);
+      const glm::dvec3 share = albedoOfBrdf(function(white), glm::vec3(atAngles(theta, 0.4)), 96);
       EXPECT_NEAR(share.x, 1, 2e-3) << slope << " at " << theta;
     }
   }

@@ -74,7 +74,7 @@ TEST(MeasuredModel, SamplesReflectWhatTheTableDoes) {
     const glsl::MaterialModel model = measuredModel(table).model;
     const glm::dvec3 sampled = sampledAlbedo(table.values, model, v);
     const glm::dvec3 exact =
-        albedo([&](const glm::vec3& l, const glm::vec3& to) { return table.evaluate(l, to); }, v, 256);
+        albedoOfBrdf([&](const glm::vec3& l, const glm::vec3& to) { return table.evaluate(l, to); }, v, 256);
     for (int c = 0; c < 3; ++c) EXPECT_NEAR(sampled[c], exact[c], 3e-4 * exact[c]);
   };
   expectSame(metal);

@@ -180,13 +180,13 @@ TEST(TabulatedBrdf, AlbedoOfClosedForms) {
   const glm::vec3 high = glm::normalize(glm::vec3(0.2f, 0.1f, 1)),
                   low = glm::normalize(glm::vec3(3, 1, 0.5f));
   for (const glm::vec3& v : {high, low, glm::vec3(0, 0, 1)}) {
-    const glm::dvec3 lambert = albedo([](auto&, auto&) { return glm::vec3(0.159154943f); }, v);
+    const glm::dvec3 lambert = albedoOfBrdf([](auto&, auto&) { return glm::vec3(0.159154943f); }, v);
     EXPECT_NEAR(lambert.x, 0.5, 5e-4);
     // int cos^2 = 2 pi / 3.
-    const glm::dvec3 cosine = albedo([](const glm::vec3& l, auto&) { return glm::vec3(l.z); }, v);
+    const glm::dvec3 cosine = albedoOfBrdf([](const glm::vec3& l, auto&) { return glm::vec3(l.z); }, v);
     EXPECT_NEAR(cosine.x, 2 * kPi / 3, 2e-3);
   }
-  EXPECT_EQ(albedo([](auto&, auto&) { return glm::vec3(1); }, {1, 0, 0}), glm::dvec3(0));
+  EXPECT_EQ(albedoOfBrdf([](auto&, auto&) { return glm::vec3(1); }, {1, 0, 0}), glm::dvec3(0));
 }
 
 // White microfacets head-on lose only what the lobe sends below the horizon: next to nothing at m = 0.1.
@@ -194,8 +194,8 @@ TEST(TabulatedBrdf, AlbedoOfATable) {
   const Microfacets mirror{.m = 0.1, .eta = glm::dvec3(1), .k = glm::dvec3(1e6)};
   const TabulatedBrdf table = tabulate({90, 90, 30}, mirror);
   const glm::vec3 v = glm::normalize(glm::vec3(0.5f, 0, 1));
-  EXPECT_NEAR(albedo(mirror, v).x, 1, 5e-3);
-  EXPECT_NEAR(albedo(lookup(table), v).x, albedo(mirror, v).x, 5e-3);
+  EXPECT_NEAR(albedoOfBrdf(mirror, v).x, 1, 5e-3);
+  EXPECT_NEAR(albedoOfBrdf(lookup(table), v).x, albedoOfBrdf(mirror, v).x, 5e-3);
 }
 
 TEST(AnisotropicTable, TexelsHoldTheFunctionAndLinesBetweenThem) {

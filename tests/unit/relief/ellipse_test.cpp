@@ -2,6 +2,7 @@
 
 #include <gtest/gtest.h>
 
+#include "glsl/relief/relief_field.glsl"
 #include "tests/unit/relief/fields.h"
 
 namespace limn::relief {
@@ -44,6 +45,42 @@ TEST(ReliefEllipseTest, OfAFlatFieldIsTheDiscAndOfAPitNothing) {
   const glsl::ReliefEllipse pit = momentEllipse(std::vector<double>(16, 0.0));
   EXPECT_FALSE(glsl::ellipse_lit(pit, {0, 0, 1}));
   EXPECT_EQ(glsl::ellipse_visibility(pit, {0, 0, 1}, 0.1f), 0);
+}
+
+/// A horizon of one elevation h on all sides is a circle, whose curvature is tan h. Within a light of radius
+/// r it bends away from a great circle by r^2 / 2 tan h at most, which cuts at most r tan h / (3 pi) of the
+/// light. Great circles cut a round light at the ratio of tangents instead of sines: 0.0025 at most of this
+/// one. The points add 0.001.
+TEST(ReliefEllipseTest, SoftLightsAreCutByARoundHorizonAndByTheBase) {
+  constexpr double kSine = 0.15, kDegree = std::numbers::pi / 180;
+  constexpr int kPoints = 4096;
+  for (const double elevation : {0.0, 3.0, 5.0, 10.0, 20.0, 40.0}) {
+    const double horizon = elevation * kDegree;
+    const auto variance = static_cast<float>(std::cos(horizon) * std::cos(horizon) / 4);
+    const glsl::ReliefEllipse stored = glsl::relief_ellipse_unpack(glsl::relief_ellipse_pack(
+        {.centre = glm::vec2(0), .xx = variance, .xy = 0, .yy = variance, .spread = 0}));
+    for (const double degrees : {1.0, 2.0, 5.0, 8.0, 10.0, 15.0, 30.0, 60.0}) {
+      const double angle = degrees * kDegree;
+      // In the plane of the light and the zenith, in azimuth 0.7.
+      const glm::dvec3 l(std::cos(angle) * std::cos(0.7), std::cos(angle) * std::sin(0.7), std::sin(angle));
+      const glm::dvec3 u = glm::normalize(glm::cross(l, glm::dvec3(0, 0, 1))), v = glm::cross(u, l);
+      int above = 0, seen = 0;
+      for (int i = 0; i < kPoints; ++i) {
+        const double radius = kSine * std::sqrt((i + 0.5) / kPoints), turn = i * 2.39996323;
+        const glm::dvec3 d =
+            l * std::sqrt(1 - radius * radius) + radius * std::cos(turn) * u + radius * std::sin(turn) * v;
+        above += d.z > 0;
+        seen += d.z > std::sin(horizon);
+      }
+      const double w =
+          static_cast<double>(glsl::ellipse_visibility(stored, glm::vec3(l), static_cast<float>(kSine)));
+      const double bound = kSine * std::tan(horizon) / (3 * std::numbers::pi) + 0.0035;
+      EXPECT_NEAR(w, static_cast<double>(seen) / above, bound) << elevation << ' ' << degrees;
+      if (elevation == 0) {
+        EXPECT_NEAR(w, 1, 1e-6) << degrees;
+      }
+    }
+  }
 }
 
 TEST(ReliefEllipseTest, MomentsErrLessThanThePublishedFit) {

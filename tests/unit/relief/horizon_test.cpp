@@ -75,6 +75,31 @@ TEST(ReliefHorizonTest, SweepsAgreeOnTilesThatAreNotSquareAndOnClampedEdges) {
   }
 }
 
+/// Grooves as above on tiles that are a million times and more as long as wide: in metres 8 of the longer
+/// sides are 4e8 texels of the shorter one, or more than integers count.
+TEST(ReliefHorizonTest, LinesEndAfterAsManyTexelsOfStretchedTiles) {
+  constexpr int size = 64;
+  constexpr double scale = 1000;
+  std::vector<float> values;
+  for (int y = 0; y < size; ++y)
+    for (int x = 0; x < size; ++x)
+      values.push_back(static_cast<float>(std::abs(x - size / 2)) / static_cast<float>(size));
+  for (const glm::dvec2& tile : {glm::dvec2(1e-3, 1e3), glm::dvec2(1e-6, 1e6)}) {
+    const HeightField field({size, size}, values, tile, scale);
+    const Horizons horizons = sweepHorizons(field, 5);  // none of them along the grooves
+    for (int i = 0; i < 5; ++i)
+      for (int x = 0; x < size; ++x) {
+        const double cosine = std::cos(horizons.angle(i)),
+                     crest = cosine > 0 ? size - x : (x == 0 ? size : x);
+        const double below = scale * (0.5 - std::abs(x - size / 2) / static_cast<double>(size));
+        const double expected = below / (crest / size * tile.x) * std::abs(cosine);
+        EXPECT_NEAR(horizons.tangent(i, static_cast<std::size_t>(5 * size + x)), expected,
+                    1e-5 * (1 + expected))
+            << tile.x << ' ' << i << ' ' << x;
+      }
+  }
+}
+
 TEST(ReliefHorizonTest, OfFlatAndSmallFieldsIsLevel) {
   for (const Wrap wrap : {Wrap::periodic, Wrap::clamped})
     for (const glm::ivec2& size : {glm::ivec2(1, 1), glm::ivec2(1, 7), glm::ivec2(7, 1), glm::ivec2(5, 5)}) {
