@@ -51,6 +51,15 @@ LIMN_FN float drawn_radius(NormalisedColours colours, PointSource source, PointD
   return diffusion_radius(colours, drawn_channel(source.channels, draw.choice), draw.radius);
 }
 
+// Of a pixel's points the last ones may be drawn from the disc. The others are drawn from two profiles where light between two
+// colours goes by both: the third and fourth of each four from the one that reaches farther.
+LIMN_FN bool drawn_from_wider(int point) { return (point & 2) != 0; }
+
+// The part of the first `count` points that drawn_from_wider() holds for.
+LIMN_FN float drawn_wider_share(int count) {
+  return float(count / 4 * 2 + max(count % 4 - 2, 0)) / float(max(count, 1));
+}
+
 // The density at distance r of all that points are drawn from (Veach's balance heuristic). `density`: diffusion_density() there.
 LIMN_FN float drawn_density(vec3 density, PointSource source, float r) {
   float disc = r <= source.uniform_radius ? inverse_pi / (source.uniform_radius * source.uniform_radius) : 0.0f;

@@ -25,9 +25,10 @@ LIMN_FN vec3 entry_mean(vec3 light, vec3 weights, float hits, float points, int 
 
 // The part of the profile that entry_mean() stands for where hidden places are added to it: of `inside` points in the picture
 // `hits` met the body, and what lies beside the picture is still like what is seen. Weights are noisy: their share is no less
-// than that of the points. Where no point tells of anything, the light at the pixel stands for all.
+// than that of the points. Where all points lie beside the picture, the light at the pixel stands for all; where those in it meet
+// nothing of the body, nothing of what leaves is seen to enter.
 LIMN_FN vec3 entry_seen_share(vec3 weights, float hits, float inside, int normalise) {
-  if (hits == 0.0f || inside == 0.0f || normalise == entry_normalise_none) return vec3(1.0f);
+  if (inside == 0.0f || normalise == entry_normalise_none) return vec3(1.0f);
   if (normalise == entry_normalise_count) return vec3(hits / inside);
   return clamp(weights, vec3(hits), vec3(inside)) / inside;
 }

@@ -4,6 +4,8 @@
 #include <cmath>
 #include <limits>
 
+#include "core/scene/draw_instance.h"
+#include "core/scene/subsurface.h"
 #include "glsl/scene/light.glsl"
 
 namespace limn::hierarchical_subsurface {
@@ -14,14 +16,6 @@ namespace {
 constexpr float kPointsPerSquare = 2.3f;
 /// Distances to points of bodies without area do not matter.
 constexpr float kNoPoints = 1e9f;
-
-const scene::Material& materialOf(const scene::Scene& scene, const scene::DrawInstance& draw) {
-  const auto mesh = static_cast<size_t>(draw.mesh);
-  const int material = draw.node == scene::kNone
-                           ? scene.dynamic[mesh].material
-                           : scene.meshes[mesh].primitives[static_cast<size_t>(draw.primitive)].material;
-  return scene.materials[static_cast<size_t>(material)];
-}
 
 /// Sets the one draw of `own` to what it is in `pose`.
 void copyDraw(const scene::Pose& pose, uint32_t draw, scene::Pose& own) {
@@ -38,7 +32,8 @@ void copyDraw(const scene::Pose& pose, uint32_t draw, scene::Pose& own) {
 BodyPoints::BodyPoints(const scene::Scene& scene, const scene::Pose& pose, int count)
     : scene_(scene), drawCount_(pose.instances.size()), bodies_(std::max<size_t>(drawCount_, 1)) {
   for (uint32_t draw = 0; draw < drawCount_; ++draw)
-    if (materialOf(scene, pose.instances[draw]).subsurface) parts_.push_back(makeBody(draw, pose, count));
+    if (scene::materialOf(scene, pose.instances[draw]).subsurface)
+      parts_.push_back(makeBody(draw, pose, count));
   std::vector<const radiosity::Forest*> forests;
   for (const Body& body : parts_) forests.push_back(&body.elements->forest());
   tree_ = WalkTree(forests);
@@ -102,13 +97,13 @@ void BodyPoints::place(size_t index) {
                                            .normal = glm::vec3(leaf.normal),
                                            .reach = std::sqrt(part.areas[slot]) * space.radius()};
   }
-  const scene::Material& material = materialOf(scene_, part.pose.instances.front());
+  const scene::Material& material = scene::materialOf(scene_, part.pose.instances.front());
   bodies_[part.draw] = {.centre = space.centre(),
                         .radius = space.radius(),
                         .extinction = material.subsurface->extinction,
                         .softening = part.spacing,
                         .absorption = material.subsurface->absorption,
-                        .eta = std::clamp(material.ior, 1.f, 3.f),
+                        .eta = scene::subsurfaceIor(material.ior),
                         .first_node = tree_.first(index),
                         .textured = material.subsurface->albedoFromBaseColour ? 1u : 0u,
                         .unused = glm::uvec2(0)};

@@ -25,6 +25,8 @@ class BodyPoints {
   /// Moves the points to `pose`, which must fit; areas stay.
   void update(const scene::Pose& pose);
 
+  /// Returns whether no draw is a body.
+  bool empty() const { return parts_.empty(); }
   /// Returns an element for each draw instance; of those that are no bodies all is 0.
   std::span<const glsl::ScatterBody> bodies() const { return bodies_; }
   /// Returns where each leaf is lit.

@@ -57,6 +57,10 @@ class HierarchicalSubsurface : public Technique {
   frame::TextureHandle addPasses(frame::FrameGraph& graph, const TechniqueInputs& inputs,
                                  const TermRequest& request) override {
     points_.emplace(inputs.scene, inputs.pose, inputs.parameters.integer("points"));
+    if (points_->empty()) {
+      graph.leaveOut("light below surfaces", info.name, "no surface is translucent");
+      return request.target;
+    }
     createBuffers(inputs.gpuScene.device());
     addUpdate(graph, inputs);
     return addGather(graph, inputs, request.target, addSums(graph, addLight(graph, inputs, request)));
@@ -78,6 +82,7 @@ class HierarchicalSubsurface : public Technique {
   void addUpdate(frame::FrameGraph& graph, const TechniqueInputs& inputs) {
     frame::PassBuilder pass = graph.addPass("update points", info.name);
     pass.read(inputs.handles.geometry, Access::storageLoad, "vertices, which the CPU moves as well")
+        .read(inputs.handles.instances, Access::storageLoad, "where instances are")
         .cacheable();
     bodies_ = pass.write(graph.importBuffer("translucent bodies", bodyBuffer_), Access::copyTarget,
                          "matter and extent of each draw");
@@ -115,7 +120,7 @@ class HierarchicalSubsurface : public Technique {
       gpu::Program& kernel = context.use(program);
       kernel.set("point_count", count);
       light.set(kernel, bias);
-      context.dispatch(static_cast<int>(count), 1, 1, 64, 1);
+      context.dispatchRows((int64_t{count} + 63) / 64);
     });
     return entering;
   }
@@ -132,7 +137,7 @@ class HierarchicalSubsurface : public Technique {
         gpu::Program& kernel = context.use(program);
         kernel.set("first_node", range.first);
         kernel.set("node_count", range.count);
-        context.dispatch(static_cast<int>(range.count), 1, 1, 64, 1);
+        context.dispatchRows((int64_t{range.count} + 63) / 64);
       });
     }
     return entering;

@@ -1,4 +1,5 @@
 // The light that enters at points, E / pi.
+#include "glsl/numeric/work_items.glsl"
 #include "glsl/shadow/entering_light.glsl"
 #include "techniques/hierarchical_subsurface/scatter_tree.glsl"
 
@@ -11,7 +12,7 @@ layout(std430) readonly buffer Bodies { ScatterBody bodies[]; };
 #endif
 
 void main() {
-  uint index = gl_GlobalInvocationID.x;
+  uint index = work_item_index();
   if (index >= point_count) return;
   ScatterPoint point = points[index];
   vec3 light = vec3(0.0);

@@ -1,4 +1,5 @@
 // What enters at the clusters of one level: the mean of their children, weighted by area.
+#include "glsl/numeric/work_items.glsl"
 #include "techniques/hierarchical_subsurface/scatter_tree.glsl"
 
 layout(local_size_x = 64) in;
@@ -8,8 +9,9 @@ uniform uint first_node;
 uniform uint node_count;
 
 void main() {
-  if (gl_GlobalInvocationID.x >= node_count) return;
-  uint index = first_node + gl_GlobalInvocationID.x;
+  uint item = work_item_index();
+  if (item >= node_count) return;
+  uint index = first_node + item;
   ScatterNode node = nodes[index];
   vec3 sum = vec3(0.0);
   for (uint k = 0u; k < node.child_count; ++k)

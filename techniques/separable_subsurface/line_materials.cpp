@@ -9,8 +9,9 @@
 
 namespace limn::separable_subsurface {
 
-LineMaterials lineMaterials(const scene::Scene& scene, const LineSettings& settings) {
-  scene::TranslucentKinds kinds = scene::translucentKinds(scene);
+LineMaterials lineMaterials(const scene::Scene& scene, const scene::Pose& pose,
+                            const LineSettings& settings) {
+  scene::TranslucentKinds kinds = scene::translucentKinds(scene, pose);
   LineMaterials result;
   result.rows = std::move(kinds.ofMaterials);
   result.textured = kinds.textured;

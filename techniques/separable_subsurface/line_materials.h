@@ -1,4 +1,4 @@
-// Declares the taps of a scene's translucent materials.
+// Declares the taps of the translucent materials that a scene draws.
 #pragma once
 
 #include <cstdint>
@@ -19,10 +19,11 @@ struct LineSettings {
 struct LineMaterials {
   std::vector<glsl::LineMaterial> materials;
   std::vector<glsl::LineTap> taps;
-  std::vector<uint32_t> rows;  ///< of each material of the scene, in `materials`; ~0: it is opaque
-  bool textured = false;       ///< at least one has its pixels' albedo
+  std::vector<uint32_t>
+      rows;               ///< of each material of the scene, in `materials`; ~0: it is opaque or not drawn
+  bool textured = false;  ///< at least one has its pixels' albedo
 };
 
-LineMaterials lineMaterials(const scene::Scene& scene, const LineSettings& settings);
+LineMaterials lineMaterials(const scene::Scene& scene, const scene::Pose& pose, const LineSettings& settings);
 
 }  // namespace limn::separable_subsurface

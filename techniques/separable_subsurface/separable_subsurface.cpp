@@ -30,7 +30,8 @@ constexpr Parameter kParameters[] = {
     choice("footprint", tangent, kFootprints,
            "tangent: taps lie on the plane that touches the surface; facing: on one that faces the camera"),
     boolean("follow_surface", true, "Taps that lie before or behind that plane are missing"),
-    real("depth_limit", 4, {0.001, 1000}, "radii with half the light", "By which a followed tap may be off")
+    real("depth_limit", 4, {0.001, 1000}, "radii with half the light",
+         "By which a followed tap may be off the plane, in view depth")
         .logScale(),
     choice("missing", mean, kMissing,
            "What stands for missing taps: the pixel's own light, or the mean of the others"),
@@ -184,12 +185,13 @@ class Passes {
 frame::TextureHandle SeparableSubsurface::addPasses(frame::FrameGraph& graph, const TechniqueInputs& inputs,
                                                     const TermRequest& request) {
   const ParameterValues& p = inputs.parameters;
-  const LineMaterials kernels = separable_subsurface::lineMaterials(
-      inputs.scene, {.normalised = p.choice("profile") == normalisedDiffusion,
-                     .taps = p.integer("taps"),
-                     .depthLimit = p.real("depth_limit")});
+  const LineMaterials kernels =
+      separable_subsurface::lineMaterials(inputs.scene, inputs.pose,
+                                          {.normalised = p.choice("profile") == normalisedDiffusion,
+                                           .taps = p.integer("taps"),
+                                           .depthLimit = p.real("depth_limit")});
   if (kernels.materials.empty()) {
-    graph.leaveOut("light below surfaces", info.name, "no material is translucent");
+    graph.leaveOut("light below surfaces", info.name, "no surface is translucent");
     return request.target;
   }
   gpu::Device& device = inputs.gpuScene.device();

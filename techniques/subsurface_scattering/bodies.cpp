@@ -7,7 +7,9 @@
 #include <span>
 
 #include "core/base/error.h"
-#include "glsl/numeric/srgb.glsl"
+#include "core/scene/diffusion_profile.h"
+#include "core/scene/draw_instance.h"
+#include "core/scene/subsurface.h"
 
 namespace limn::subsurface_scattering {
 namespace {
@@ -19,44 +21,23 @@ bool isTextured(const scene::Material& material, const scene::Primitive& primiti
          (material.baseColourTexture.image != scene::kNone || !primitive.colours.empty());
 }
 
-/// Returns the largest albedo of each channel that a texture makes of the material's; vertex colours only
-/// make it smaller.
-glm::vec3 largestAlbedo(const scene::Scene& scene, const scene::Material& material) {
-  glm::vec3 largest(1);
-  if (const int index = material.baseColourTexture.image; index != scene::kNone) {
-    const scene::TextureImage& image = scene.images[static_cast<size_t>(index)];
-    glm::ivec3 most(image.levels.empty() ? 255 : 0);
-    if (!image.levels.empty())
-      for (size_t i = 0; i + 3 < image.levels[0].rgba.size(); i += 4)
-        for (int c = 0; c < 3; ++c)
-          most[c] = std::max<int>(most[c], image.levels[0].rgba[i + static_cast<size_t>(c)]);
-    largest = glm::vec3(most) / 255.f;
-    if (image.srgb) largest = glsl::srgb_decode(largest);
-  }
-  return glm::clamp(largest * glm::vec3(material.baseColour), 0.f, 1.f);
-}
-
-/// Returns how many of the samples are drawn from the disc.
-int fromDisc(const Drawing& drawing) {
-  return static_cast<int>(std::lround(drawing.uniformShare * static_cast<float>(drawing.samples)));
-}
-
 DiffusionBody makeBody(const scene::Scene& scene, const scene::Material& material, bool textured,
                        const Drawing& drawing) {
-  const float eta = std::clamp(material.ior, 1.f, 3.f);
+  const float eta = scene::subsurfaceIor(material.ior);
   const glm::vec3 extinction = material.subsurface->extinction / drawing.scale;
   const glsl::DiffusionBoundary boundary = glsl::diffusion_boundary(eta);
-  const glsl::WalkReflectance walk = glsl::walk_reflectance(boundary);
-  const glm::vec3 absorption = textured ? glsl::walk_absorption(walk, largestAlbedo(scene, material))
-                                        : material.subsurface->absorption;
-  const glm::vec3 reach = glsl::diffusion_reach(extinction, absorption, walk);
+  const glm::vec3 absorption =
+      textured
+          ? scene::subsurfaceAbsorption(scene::baseAlbedo(scene, material, scene::OfTexels::largest), eta)
+          : material.subsurface->absorption;
+  const glm::vec3 reach = glsl::diffusion_reach(extinction, absorption, glsl::walk_reflectance(boundary));
   const float unit = std::max({reach.x, reach.y, reach.z});
   return {.extinction = extinction * unit,
           .unit = unit,
           .absorption = absorption,
           .eta = eta,
           .channels = glsl::diffusion_drawn_channels(reach),
-          .uniform_share = static_cast<float>(fromDisc(drawing)) / static_cast<float>(drawing.samples),
+          .uniform_share = static_cast<float>(drawing.discPoints()) / static_cast<float>(drawing.samples),
           .uniform_radius = drawing.uniformRadius,
           .textured = textured ? 1u : 0u,
           .first_point = 0,
@@ -71,7 +52,7 @@ bool alike(const DiffusionBody& a, const DiffusionBody& b) {
 /// Calls `take` with what is random about each point, for each place in the pattern its samples.
 template <class Take>
 void forDraws(const Drawing& drawing, Take&& take) {
-  const int places = drawing.block * drawing.block, disc = fromDisc(drawing);
+  const int places = drawing.block * drawing.block, disc = drawing.discPoints();
   for (int place = 0; place < places; ++place) {
     for (int i = 0; i < drawing.samples; ++i)
       take(glsl::point_draw(static_cast<uint32_t>(i * places + place), i >= drawing.samples - disc));
@@ -103,20 +84,19 @@ void checkPoints(std::span<const DiffusionBody> bodies, const Drawing& drawing, 
 
 }  // namespace
 
+int Drawing::discPoints() const {
+  return static_cast<int>(std::lround(uniformShare * static_cast<float>(samples)));
+}
+
 Bodies findBodies(const scene::Scene& scene, const scene::Pose& pose, const Drawing& drawing,
                   int64_t maxStorageBlockBytes) {
   Bodies result;
   result.ofInstances.assign(pose.instances.size(), glsl::no_body);
   for (size_t i = 0; i < pose.instances.size(); ++i) {
     const scene::DrawInstance& instance = pose.instances[i];
-    const auto mesh = static_cast<size_t>(instance.mesh);
-    const bool dynamic = instance.node == scene::kNone;
-    const scene::Primitive& primitive =
-        dynamic ? *pose.dynamic[mesh].primitive
-                : scene.meshes[mesh].primitives[static_cast<size_t>(instance.primitive)];
-    const int index = dynamic ? scene.dynamic[mesh].material : primitive.material;
-    const scene::Material& material = scene.materials[static_cast<size_t>(index)];
+    const scene::Material& material = scene::materialOf(scene, instance);
     if (!material.subsurface) continue;
+    const scene::Primitive& primitive = scene::primitiveOf(scene, pose, instance);
     const DiffusionBody body = makeBody(scene, material, isTextured(material, primitive), drawing);
     const auto known =
         std::ranges::find_if(result.bodies, [&](const DiffusionBody& other) { return alike(other, body); });

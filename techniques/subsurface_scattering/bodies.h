@@ -21,6 +21,7 @@ struct Drawing {
   float scale = 1;          ///< factor on all mean free paths
 
   int points() const { return samples * block * block; }  ///< of one body
+  int discPoints() const;                                 ///< of a pixel's samples, drawn from the disc
 };
 
 struct Bodies {

@@ -5,9 +5,10 @@
 // What it stores still lacks a factor that varies with the pixel's own colour (exit.comp.glsl): without textures C, with them
 // its root.
 //
-// SAMPLES: points of each pixel. NORMALISE: entry_normalise_*. PLANES 2: half of the points lie in the plane that faces the
-// camera. ROOT 1: at a border of two colours the profile is the root of both, else that of the pixel. POINT_COUNT: of all
-// points, where they fit a uniform block. LIGHT_VIEWS 1: light also enters where the camera does not look (light_views.glsl).
+// SAMPLES: points of each pixel. DISC_POINTS: how many of them, the last ones, are drawn from the disc. NORMALISE:
+// entry_normalise_*. PLANES 2: half of the points lie in the plane that faces the camera. ROOT 1: at a border of two colours the
+// profile is the root of both, else that of the pixel. POINT_COUNT: of all points, where they fit a uniform block. LIGHT_VIEWS 1:
+// light also enters where the camera does not look (light_views.glsl).
 #include "glsl/diffusion/entry_sums.glsl"
 #include "glsl/diffusion/eye_plane.glsl"
 #include "glsl/numeric/geometry.glsl"
@@ -74,13 +75,9 @@ struct Drawing {
 #endif
 };
 
-const int widest_points = SAMPLES / 4 * 2 + max(SAMPLES % 4 - 2, 0);
-
-bool draws_widest(int i) { return (i & 2) != 0; }
-
 float radius_drawn(Drawing d, int i, PointDraw draw) {
 #if WIDEST
-  if (draws_widest(i)) return drawn_radius(d.widest, d.widest_source, draw);
+  if (drawn_from_wider(i)) return drawn_radius(d.widest, d.widest_source, draw);
 #endif
   return drawn_radius(d.colours, d.source, draw);
 }
@@ -90,7 +87,7 @@ float density_drawn(Drawing d, float r) {
   float density = drawn_density(diffusion_density(d.colours, r), d.source, r);
 #if WIDEST
   float other = drawn_density(diffusion_density(d.widest, r), d.widest_source, r);
-  density = mix(density, other, float(widest_points) / float(SAMPLES));
+  density = mix(density, other, drawn_wider_share(SAMPLES - DISC_POINTS));
 #endif
   return density;
 }

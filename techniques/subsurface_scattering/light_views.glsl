@@ -59,7 +59,7 @@ LitPlace lit_place(ShadowView view, vec3 drawn, float across, uint instance, Dif
   ReflectiveTexel lit;
   lit.position = p.position;
   lit.normal = p.normal;
-  vec3 intensity = texel_intensity(view.light, view.origin, lit);
+  vec3 intensity = texel_intensity(view, lit);
   p.light = intensity * (inverse_pi * diffusion_entry(boundary, cosine) * measure);
 #if MEDIUM
   Medium medium = scene_medium();

@@ -323,6 +323,7 @@ class Passes {
     gathered = pass.write(gathered, first ? Access::imageStore : Access::imageLoadStore, "gathered",
                           "light that enters around pixels");
     description.defines["SAMPLES"] = std::to_string(drawing.samples);
+    description.defines["DISC_POINTS"] = std::to_string(drawing.discPoints());
     description.defines["NORMALISE"] = std::to_string(inputs_.parameters.choice("normalise"));
     description.defines["LIGHT_VIEWS"] = lightViews_ ? "1" : "0";
     if (lightViews_) readLightViews(pass, description.defines);

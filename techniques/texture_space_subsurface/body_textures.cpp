@@ -7,6 +7,7 @@
 
 #include "core/base/error.h"
 #include "core/scene/charts.h"
+#include "core/scene/draw_instance.h"
 #include "core/scene/instance_areas.h"
 #include "glsl/diffusion/boundary.glsl"
 #include "techniques/texture_space_subsurface/gaussians.h"
@@ -23,10 +24,6 @@ constexpr float kLeastMargin = 4;
 constexpr double kShrinks = 1.84;
 /// Bytes of all textures together.
 constexpr int64_t kMostBytes = int64_t{2} << 30;
-
-bool mirrors(const scene::DrawInstance& draw) {
-  return (glm::determinant(glm::dmat3(glm::dmat4(draw.objectToWorld))) < 0) != draw.mirroredSkin;
-}
 
 /// Returns the vertices of a draw in the world, m.
 std::vector<glm::vec3> placesOf(const scene::Primitive& primitive, const scene::Pose& pose,
@@ -50,8 +47,8 @@ float largestExtent(std::span<const glm::vec3> places) {
 
 }  // namespace
 
-BodyMatter bodyMatter(const scene::Scene& scene, bool normalised, int count) {
-  scene::TranslucentKinds kinds = scene::translucentKinds(scene);
+BodyMatter bodyMatter(const scene::Scene& scene, const scene::Pose& pose, bool normalised, int count) {
+  scene::TranslucentKinds kinds = scene::translucentKinds(scene, pose);
   BodyMatter result;
   result.ofMaterials = std::move(kinds.ofMaterials);
   result.textured = kinds.textured;
@@ -78,21 +75,14 @@ std::vector<LaidOutDraw> translucentDraws(const scene::Scene& scene, const scene
   std::vector<LaidOutDraw> result;
   for (uint32_t draw = 0; draw < pose.instances.size(); ++draw) {
     const scene::DrawInstance& instance = pose.instances[draw];
-    const auto mesh = static_cast<size_t>(instance.mesh);
     LaidOutDraw laid{};
     laid.draw = draw;
-    int material;
-    if (instance.node == scene::kNone) {
-      laid.source = pose.dynamic[mesh].primitive;
-      laid.primitive = laid.source.get();
-      material = scene.dynamic[mesh].material;
-    } else {
-      laid.primitive = &scene.meshes[mesh].primitives[static_cast<size_t>(instance.primitive)];
-      material = laid.primitive->material;
-    }
-    laid.kind = matter.ofMaterials[static_cast<size_t>(material)];
+    laid.kind = matter.ofMaterials[static_cast<size_t>(scene::materialIndexOf(scene, instance))];
     if (laid.kind == glsl::no_kind) continue;
-    laid.mirrored = mirrors(instance);
+    if (instance.node == scene::kNone)
+      laid.source = pose.dynamic[static_cast<size_t>(instance.mesh)].primitive;
+    laid.primitive = &scene::primitiveOf(scene, pose, instance);
+    laid.mirrored = scene::mirrored(instance);
     laid.areas = scene::areaFactors(instance.objectToWorld);
     result.push_back(std::move(laid));
   }
@@ -104,7 +94,7 @@ bool fits(const scene::Pose& pose, std::span<const LaidOutDraw> draws) {
     const scene::DrawInstance& instance = pose.instances[laid.draw];
     const bool same =
         !laid.source || pose.dynamic[static_cast<size_t>(instance.mesh)].primitive == laid.source;
-    return same && mirrors(instance) == laid.mirrored &&
+    return same && scene::mirrored(instance) == laid.mirrored &&
            scene::areasAlike(scene::areaFactors(instance.objectToWorld), laid.areas);
   });
 }

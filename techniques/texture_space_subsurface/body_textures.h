@@ -46,7 +46,7 @@ struct LaidOutDraw {
   glm::dvec3 areas;  ///< scene::areaFactors() of its matrix
 };
 
-/// Holds what is known of the scene's translucent materials.
+/// Holds what is known of the translucent materials that are drawn.
 struct BodyMatter {
   std::vector<glsl::TexturedKind> kinds;
   std::vector<glsl::SurfaceGaussian> gaussians;  ///< `count` for each kind
@@ -55,8 +55,8 @@ struct BodyMatter {
   bool textured = false;
 };
 
-/// Returns the kinds of the scene's translucent materials as sums of `count` Gaussians.
-BodyMatter bodyMatter(const scene::Scene& scene, bool normalised, int count);
+/// Returns the kinds of the translucent materials that a pose draws, as sums of `count` Gaussians.
+BodyMatter bodyMatter(const scene::Scene& scene, const scene::Pose& pose, bool normalised, int count);
 
 /// Returns the translucent draws of a pose.
 std::vector<LaidOutDraw> translucentDraws(const scene::Scene& scene, const scene::Pose& pose,

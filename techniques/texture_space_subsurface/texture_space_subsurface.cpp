@@ -299,10 +299,10 @@ TextureHandle TextureSpaceSubsurface::addPasses(frame::FrameGraph& graph, const 
   const ParameterValues& p = inputs.parameters;
   drawCount_ = inputs.pose.instances.size();
   const int texels = p.integer("texels"), gaussians = p.integer("gaussians");
-  const BodyMatter matter =
-      texture_space::bodyMatter(inputs.scene, p.choice("profile") == normalisedDiffusion, gaussians);
+  const BodyMatter matter = texture_space::bodyMatter(inputs.scene, inputs.pose,
+                                                      p.choice("profile") == normalisedDiffusion, gaussians);
   if (matter.kinds.empty()) {
-    graph.leaveOut("light below surfaces", info.name, "no material is translucent");
+    graph.leaveOut("light below surfaces", info.name, "no surface is translucent");
     return request.target;
   }
   draws_ = texture_space::translucentDraws(inputs.scene, inputs.pose, matter);

@@ -3,7 +3,9 @@
 #include <cmath>
 #include <limits>
 #include <memory>
+#include <string>
 #include <utility>
+#include <vector>
 
 #include "core/scene/camera.h"
 #include "glsl/diffusion/normalised.glsl"
@@ -216,6 +218,39 @@ TEST_F(SubsurfaceTechniqueTest, BodiesThatGrewAreThoseOfAFreshStart) {
   }
 }
 
+/// What is kept from frame to frame follows a body that moves as a whole.
+TEST_F(SubsurfaceTechniqueTest, BodiesThatMovedAreThoseOfAFreshStart) {
+  scene::Scene scene = ball(0.1f);
+  scene.nodes[0].matrix.reset();
+  scene::Animation& animation = scene.animations.emplace_back();
+  animation.duration = 2;
+  animation.channels.push_back({scene::AnimationChannel::Path::translation,
+                                scene::AnimationChannel::Interpolation::linear,
+                                0,
+                                {0, 1},
+                                {0, 0, 0, 0.75f, 0, 0}});
+  for (const render::TechniqueUse& use : uses()) {
+    SCOPED_TRACE(use.plugin->info->name);
+    render::Settings s = settings(kPictureSide, kPictureSide, Term::subsurface, {use});
+    s.dynamic = false;
+    render::Renderer moved(device(), scene), fresh(device(), scene);
+    const auto at = [&](render::Renderer& renderer, double time) {
+      renderer.setTime(time, 0);
+      renderer.setCamera(scene::lookAt({0.5f, 1.5f, 4}, vec3(0), 0.7f));
+      renderer.render();
+      return renderer.read();
+    };
+    moved.configure(s);
+    fresh.configure(s);
+    const Image before = at(moved, 0), after = at(moved, 1), wanted = at(fresh, 1);
+    const double change = rmse(before, wanted);
+    EXPECT_GT(change, 0.1 * mean(wanted));
+    // Rounding of places decides on other clusters and charts, whose errors are some thousandths of the
+    // light.
+    EXPECT_LT(rmse(after, wanted), 0.1 * change);
+  }
+}
+
 /// Without translucent surfaces techniques are not asked, and pictures are the same in all bits.
 TEST_F(SubsurfaceTechniqueTest, OpaqueScenesLeaveThemOut) {
   const scene::Scene scene = asset("cornell_box");
@@ -230,6 +265,30 @@ TEST_F(SubsurfaceTechniqueTest, OpaqueScenesLeaveThemOut) {
     for (const frame::PassReport& pass : renderer.explain())
       passes += pass.technique == use.plugin->info->name && pass.state == frame::PassState::run;
     EXPECT_EQ(passes, 0);
+  }
+}
+
+/// A translucent material that nothing is drawn with changes neither bits nor passes.
+TEST_F(SubsurfaceTechniqueTest, MaterialsThatAreNotDrawnHaveNoPasses) {
+  const scene::Scene without = asset("cornell_box");
+  scene::Scene with = without;
+  with.materials.push_back(ball(0.1f).materials[0]);
+  const auto drawing = [&](const scene::Scene& scene, const std::vector<render::TechniqueUse>& techniques) {
+    render::Renderer renderer(device(), scene);
+    Image image = picture(renderer, settings(32, 32, Term::final, techniques));
+    std::vector<std::string> passes;
+    for (const frame::PassReport& pass : renderer.explain())
+      if (pass.state == frame::PassState::run) passes.push_back(pass.name);
+    return std::pair(std::move(image), std::move(passes));
+  };
+  const auto [image, passes] = drawing(without, {});
+  std::vector<std::vector<render::TechniqueUse>> choices(1);
+  for (const render::TechniqueUse& use : uses()) choices.push_back({use});
+  for (const auto& techniques : choices) {
+    SCOPED_TRACE(techniques.empty() ? "none" : techniques.front().plugin->info->name);
+    const auto [same, ran] = drawing(with, techniques);
+    EXPECT_EQ(ran, passes);
+    EXPECT_TRUE(std::ranges::equal(same.data(), image.data()));
   }
 }
 

@@ -116,6 +116,36 @@ TEST(DrawnPoints, HaveTheirDensity) {
   }
 }
 
+/// Whatever the disc leaves of the last four points.
+TEST(DrawnPoints, HaveTheirDensityWhereTwoProfilesShareWhatTheDiscLeaves) {
+  constexpr int kPoints = 1 << 14;
+  for (const ivec2 counts : {ivec2(16, 0), ivec2(16, 2), ivec2(4, 2), ivec2(7, 3), ivec2(4, 4)}) {
+    const int samples = counts.x, disc = counts.y;
+    const PointSource source{vec3(0, 1, 0), float(disc) / float(samples), 4};
+    const float wider = drawn_wider_share(samples - disc);
+    for (const float within : {0.5f, 2.f, 8.f}) {
+      SCOPED_TRACE(testing::Message() << samples << " points, " << disc << " of a disc, within " << within);
+      int hits = 0, points = 0;
+      for (; points < kPoints || points % samples != 0; ++points) {
+        const int point = points % samples;
+        const PointDraw draw = point_draw(uint(points), point >= samples - disc);
+        const float r = drawn_from_wider(point) ? drawn_radius(kWhite.dipole, source, draw)
+                                                : drawn_radius(kSkin.dipole, source, draw);
+        if (r < within) ++hits;
+      }
+      double integral = 0;
+      constexpr int kSteps = 4000;
+      for (int i = 0; i < kSteps; ++i) {
+        const float r = within * (float(i) + 0.5f) / kSteps;
+        const float density = mix(drawn_density(diffusion_density(kSkin.dipole, r), source, r),
+                                  drawn_density(diffusion_density(kWhite.dipole, r), source, r), wider);
+        integral += double(2 * pi * r * density * within / kSteps);
+      }
+      EXPECT_NEAR(double(hits) / points, integral, 5e-3);
+    }
+  }
+}
+
 TEST(EntryTexel, KeepsFourteenDigitsOverTheRangeOfFloats) {
   Random random(2);
   const auto packed = [](vec3 light) {
@@ -150,10 +180,19 @@ TEST(EntryMean, IsScaledByWhatIsSeen) {
   EXPECT_EQ(entry_seen_share(weights, 3, 10, entry_normalise_none), vec3(1));
   EXPECT_EQ(entry_seen_share(weights, 3, 10, entry_normalise_count), vec3(0.3f));
   EXPECT_EQ(entry_seen_share(weights, 3, 10, entry_normalise_weights), vec3(0.4f, 0.3f, 1));
-  for (int normalise = 0; normalise < 3; ++normalise) {
-    EXPECT_EQ(entry_seen_share(vec3(0), 0, 10, normalise), vec3(1)) << "the pixel's own light";
+  for (int normalise = 0; normalise < 3; ++normalise)
     EXPECT_EQ(entry_seen_share(vec3(0), 0, 0, normalise), vec3(1)) << "all points beside the picture";
-  }
+}
+
+/// Where the points in the picture met nothing of the body, the hidden places alone give light: the pixel's
+/// own, which the mean then is, would be added to what they already hold.
+TEST(EntryMean, IsNotAddedToHiddenPlacesWhereNothingIsMet) {
+  const vec3 nothing(0), here(7);
+  for (const int normalise : {entry_normalise_none, entry_normalise_count, entry_normalise_weights})
+    EXPECT_EQ(
+        entry_mean(nothing, nothing, 0, 10, normalise, here) * entry_seen_share(nothing, 0, 10, normalise),
+        nothing)
+        << normalise;
 }
 
 }  // namespace
