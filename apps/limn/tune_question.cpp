@@ -66,6 +66,16 @@ TuneParameters fixedParameters(const TechniqueInfo& technique, const TuneArgumen
   return fixed;
 }
 
+/// The last value of each parameter, which counts wherever --set is given.
+TuneParameters lastValues(const TuneParameters& parameters) {
+  TuneParameters last;
+  for (const auto& parameter : parameters) {
+    std::erase_if(last, [&](const auto& earlier) { return earlier.first == parameter.first; });
+    last.push_back(parameter);
+  }
+  return last;
+}
+
 }  // namespace
 
 bench::TuneLimit TuneGoal::tuneLimit() const {
@@ -111,6 +121,7 @@ std::vector<SearchedTechnique> searchedTechniques(const TechniqueRegistry& regis
     const TechniqueInfo& info = *plugin->info;
     SearchedTechnique searched{{info.name, {}}, fixedParameters(info, options, bounces)};
     session::choiceOf(info.name, searched.fixed).resolve(registry);  // for its errors
+    searched.fixed = lastValues(searched.fixed);
     for (const Parameter& parameter : info.parameters) {
       if (!parameter.tradesErrorForTime) continue;
       bench::TuneAxis axis = bench::tuneAxis(info.name, parameter, options.steps);

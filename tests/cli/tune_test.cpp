@@ -67,6 +67,16 @@ TEST_F(TuneCommand, TheCommandNamesTheBackEndThatWasMeasured) {
   EXPECT_THAT(outcome.out, testing::HasSubstr(" --backend osmesa --out tuned.png\n"));
 }
 
+/// As everywhere that --set is given.
+TEST_F(TuneCommand, TheLastValueOfAParameterCounts) {
+  const Outcome outcome =
+      tune({"--techniques", "hard_shadow_map", "--set", "hard_shadow_map.shadow_map_size=32", "--set",
+            "hard_shadow_map.shadow_map_size=64", "--max-error", "rmse=1", "--json"});
+  ASSERT_EQ(outcome.status, 0) << outcome.err;
+  EXPECT_EQ(nlohmann::json::parse(outcome.out)["answer"]["parameters"]["hard_shadow_map.shadow_map_size"],
+            "64");
+}
+
 /// Times of small pictures are brought to the full size by one setting that is tried in both.
 TEST_F(TuneCommand, LargePicturesAreTriedInSmallOnes) {
   const Outcome outcome = limn({"tune", "cornell_box", "--size", "256x192", "--steps", "1", "--spp", "1",
@@ -114,6 +124,9 @@ TEST_F(TuneCommand, QuestionsThatCannotBeAskedAreRefusedAtOnce) {
   expectRefused(tune({"--max-ms", "10", "--bounces", "2"}), 2, {"--bounces", "direct"});
   expectRefused(tune({"--max-ms", "10", "--techniques", "pcf", "--set", "pcss.bias=1"}), 2, {"pcss.bias"});
   expectRefused(tune({"--max-ms", "10", "--techniques", "pcf", "--set", "pcf.kernel=1000"}), 2, {"kernel"});
+  expectRefused(
+      tune({"--max-ms", "10", "--techniques", "pcf", "--set", "pcf.kernel=1000", "--set", "pcf.kernel=3"}), 2,
+      {"kernel"});
   expectRefused(tune({"--max-ms", "10", "--techniques", "pcf", "--set", "pcf.kernel"}), 2,
                 {"--set 'pcf.kernel'", "TECHNIQUE.PARAMETER=VALUE"});
   expectRefused(tune({"--max-ms", "10", "--techniques", "pcf,pcss,pcf"}), 2, {"pcf is named twice"});

@@ -62,11 +62,9 @@ class BumpFloorTest : public RenderTest {
     render::Renderer renderer(device(), scene);
     render::Settings asked = settings(kSide, kSide, term, techniques, term == Term::relief ? 0 : -1);
     asked.channels = true;
-    renderer.configure(std::move(asked));
-    renderer.setCamera(from);
-    renderer.render();
+    Image seen = picture(renderer, std::move(asked), from);
     if (passes) *passes = renderer.explain();
-    return renderer.read();
+    return seen;
   }
 
   static relief::HeightField flat() { return {{4, 4}, std::vector<float>(16, 0.3f), glm::dvec2(2)}; }

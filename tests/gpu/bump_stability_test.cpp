@@ -36,28 +36,21 @@ class BumpStabilityTest : public BumpFloorTest {
   /// `samples` x `samples` pixels of the reference for each of a picture.
   Image truth(const scene::Scene& scene, int samples = 1, const scene::CameraPose& from = camera()) {
     render::Renderer renderer(device(), scene);
-    reference::Request request{.scene = scene,
-                               .pose = renderer.pose(),
-                               .camera = from,
-                               .width = samples * kSide,
-                               .height = samples * kSide};
-    request.term = Term::relief;
-    request.light = 0;
-    request.spp = 2;
-    return reference::render(request).image.select({"R"});
+    reference::Request asked =
+        test::request(scene, renderer.pose(), from, glm::ivec2(samples * kSide), Term::relief, 2);
+    asked.light = 0;
+    return reference::render(asked).image.select({"R"});
   }
 
   /// The sum over the floor's pixels of what bumps reflect to each other once, by the reference.
   double trueBounce(const scene::Scene& scene) {
     render::Renderer renderer(device(), scene);
-    reference::Request request{
-        .scene = scene, .pose = renderer.pose(), .camera = camera(), .width = kSide, .height = kSide};
-    request.term = Term::indirect;
-    request.bounces = 1;
-    request.reliefPaths = ReliefPaths::relief;
-    request.spp = 32;
+    reference::Request asked =
+        test::request(scene, renderer.pose(), camera(), glm::ivec2(kSide), Term::indirect, 32);
+    asked.bounces = 1;
+    asked.reliefPaths = ReliefPaths::relief;
     double sum = 0;
-    forEachPoint(reference::render(request).image,
+    forEachPoint(reference::render(asked).image,
                  [&](float value, const glm::vec3&) { sum += static_cast<double>(value); });
     return sum;
   }

@@ -10,6 +10,7 @@
 #include "core/image/image.h"
 #include "core/reference/reference.h"
 #include "core/render/renderer.h"
+#include "tests/gpu/render_test.h"
 
 namespace limn::test {
 
@@ -86,13 +87,7 @@ inline Pair renderBoth(gpu::Device& device, const scene::Scene& scene, const sce
   renderer.setTime(time, animation);
   renderer.setCamera(camera);
   renderer.render();
-  reference::Request request{
-      .scene = scene, .pose = pose, .camera = camera, .progress = {}, .checkpoint = {}};
-  request.width = size.x;
-  request.height = size.y;
-  request.term = term;
-  request.spp = spp;
-  return {renderer.read(), reference::render(request).image};
+  return {renderer.read(), reference::render(request(scene, pose, camera, size, term, spp)).image};
 }
 
 }  // namespace limn::test

@@ -107,14 +107,9 @@ class EnvironmentTest : public RenderTest {
   /// With all of its channels, the variance of each pixel among them.
   static Image referenceWithNoise(const scene::Scene& scene, const render::Settings& s, int spp) {
     const scene::Pose pose = scene::evaluate(scene, 0);
-    reference::Request request{
-        .scene = scene, .pose = pose, .camera = pose.cameras.at(0), .progress = {}, .checkpoint = {}};
-    request.width = s.size.x;
-    request.height = s.size.y;
-    request.term = s.term;
-    request.light = s.light < 0 ? reference::kAllLights : s.light;
-    request.spp = spp;
-    return reference::render(request).image;
+    reference::Request asked = test::request(scene, pose, pose.cameras.at(0), s.size, s.term, spp);
+    asked.light = s.light < 0 ? reference::kAllLights : s.light;
+    return reference::render(asked).image;
   }
 };
 

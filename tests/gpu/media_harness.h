@@ -14,19 +14,9 @@ class MediaHarness : public RenderTest {
  protected:
   static constexpr int width = 128, height = 96;
 
-  static reference::Request request(render::Renderer& renderer, const scene::Scene& scene,
-                                    const scene::CameraPose& camera, Term term, int spp) {
-    reference::Request request{
-        .scene = scene, .pose = renderer.pose(), .camera = camera, .progress = {}, .checkpoint = {}};
-    request.width = width;
-    request.height = height;
-    request.term = term;
-    request.spp = spp;
-    return request;
-  }
   static Image reference(render::Renderer& renderer, const scene::Scene& scene, Term term, int spp,
                          int light = reference::kAllLights) {
-    reference::Request asked = request(renderer, scene, renderer.pose().cameras.at(0), term, spp);
+    reference::Request asked = test::request(renderer, scene, {width, height}, term, spp);
     asked.light = light;
     return reference::render(asked).image;
   }
@@ -48,10 +38,7 @@ class MediaHarness : public RenderTest {
   /// surfaces turn black. Both references have the same samples of airlight.
   static double meanOfLines(render::Renderer& renderer, const scene::Scene& scene) {
     const auto ofLight = [&](const scene::Scene& of) {
-      reference::Request asked = request(renderer, of, renderer.pose().cameras.at(0), Term::media, 64);
-      asked.width = 64;
-      asked.height = 48;
-      return mean(reference::render(asked).image);
+      return mean(reference::render(test::request(renderer, of, {64, 48}, Term::media, 64)).image);
     };
     return ofLight(scene) - ofLight(withoutCaustics(scene));
   }

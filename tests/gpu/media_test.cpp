@@ -86,13 +86,10 @@ TEST_F(MediaTest, ALampBesideTheMiddleOfAWidePoolLosesNothing) {
   render::Renderer renderer(device(), scene);
   const scene::CameraPose camera = scene::lookAt({4.6f, -0.2f, 3}, {4.6f, -1, 0}, 0.9f);  // below the water
   const auto brightness = [&](Term term, const char* name) {
-    renderer.configure(settings(64, 64, term, {technique(name)}));
-    renderer.setCamera(camera);
-    renderer.render();
-    return mean(renderer.read());
+    return mean(picture(renderer, settings(64, 64, term, {technique(name)}), camera));
   };
-  reference::Request asked = request(renderer, scene, camera, Term::caustic, 256);
-  asked.width = asked.height = 64;
+  const reference::Request asked =
+      test::request(scene, renderer.pose(), camera, {64, 64}, Term::caustic, 256);
   EXPECT_NEAR(brightness(Term::caustic, "surface_caustics") / mean(reference::render(asked).image), 1, 0.03);
 }
 
@@ -114,12 +111,11 @@ TEST_F(MediaTest, LinesSeenEndOnAreDimmedPlaceByPlace) {
   render::Renderer renderer(device(), scene);
   scene::CameraPose camera = scene::lookAt({0, 0, -float(behind)}, {0, 0, -1}, 0.6f);
   camera.near = 1;
-  renderer.configure(
-      settings(size, size, Term::media,
-               {technique("volume_caustics", {{"buffer_size", "512"}, {"paths", "refraction"}})}));
-  renderer.setCamera(camera);
-  renderer.render();
-  const Image lines = renderer.read();
+  const Image lines =
+      picture(renderer,
+              settings(size, size, Term::media,
+                       {technique("volume_caustics", {{"buffer_size", "512"}, {"paths", "refraction"}})}),
+              camera);
   const test::ViewRays rays(camera, renderer.pose().bounds, {size, size});
   double drawn = 0, expected = 0;
   for (int y = 5; y < 11; ++y)
@@ -148,10 +144,8 @@ TEST_F(MediaTest, AirlightOfADiscIsItsFluence) {
     test::shine(scene, sun, {0, 3, 0});
     scene.medium.sigmaS = glm::vec3(0.1f);
     render::Renderer renderer(device(), scene);
-    renderer.configure(settings(16, 16, Term::media, {technique("airlight")}));
-    renderer.setCamera(scene::lookAt({0, 0.5f, 1.5f}, {0, 0.5f, 0}, 0.5f));
-    renderer.render();
-    return mean(renderer.read());
+    return mean(picture(renderer, settings(16, 16, Term::media, {technique("airlight")}),
+                        scene::lookAt({0, 0.5f, 1.5f}, {0, 0.5f, 0}, 0.5f)));
   };
   EXPECT_NEAR(brightness(2) / brightness(0), 2 / (1 + std::cos(1.0)), 1e-3);
 }

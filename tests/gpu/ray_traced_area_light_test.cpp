@@ -51,15 +51,9 @@ class RayTracedAreaLightTest : public RenderTest {
   static std::vector<float> values(const Image& image) { return {image.data().begin(), image.data().end()}; }
 
   static Image truth(render::Renderer& renderer, const scene::Scene& scene, int light) {
-    reference::Request request{.scene = scene,
-                               .pose = renderer.pose(),
-                               .camera = renderer.pose().cameras.at(0),
-                               .width = kWidth,
-                               .height = kHeight};
-    request.term = Term::visibility;
-    request.light = light;
-    request.spp = 128;
-    return reference::render(request).image;
+    reference::Request asked = test::request(renderer, scene, {kWidth, kHeight}, Term::visibility, 128);
+    asked.light = light;
+    return reference::render(asked).image;
   }
 };
 

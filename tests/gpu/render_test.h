@@ -10,6 +10,7 @@
 #include <string>
 #include <vector>
 
+#include "core/reference/reference.h"
 #include "core/render/renderer.h"
 #include "core/scene_io/load.h"
 #include "core/technique/registry.h"
@@ -17,6 +18,29 @@
 #include "tests/support/paths.h"
 
 namespace limn {
+namespace test {
+
+/// Returns a request to the reference for a term, of all lights; whoever asks for more sets it. The scene and
+/// the pose must outlive it.
+inline reference::Request request(const scene::Scene& scene, const scene::Pose& pose,
+                                  const scene::CameraPose& camera, const glm::ivec2& size, Term term,
+                                  int spp) {
+  return {.scene = scene,
+          .pose = pose,
+          .camera = camera,
+          .width = size.x,
+          .height = size.y,
+          .term = term,
+          .spp = spp};
+}
+
+/// Returns the same for the pose of a renderer of that scene, from the scene's first camera.
+inline reference::Request request(render::Renderer& renderer, const scene::Scene& scene,
+                                  const glm::ivec2& size, Term term, int spp) {
+  return request(scene, renderer.pose(), renderer.pose().cameras.at(0), size, term, spp);
+}
+
+}  // namespace test
 
 /// Makes pictures, under each back end.
 class PictureTest : public GlTest {
@@ -107,12 +131,16 @@ class PictureTest : public GlTest {
     return s;
   }
 
-  /// One frame from the scene's first camera.
-  static Image picture(render::Renderer& renderer, render::Settings s) {
+  /// One frame from a camera.
+  static Image picture(render::Renderer& renderer, render::Settings s, const scene::CameraPose& camera) {
     renderer.configure(std::move(s));
-    renderer.setCamera(renderer.pose().cameras.at(0));
+    renderer.setCamera(camera);
     renderer.render();
     return renderer.read();
+  }
+  /// One frame from the scene's first camera.
+  static Image picture(render::Renderer& renderer, render::Settings s) {
+    return picture(renderer, std::move(s), renderer.pose().cameras.at(0));
   }
 
   static double rmse(const Image& a, const Image& b) {

@@ -84,12 +84,9 @@ TEST_F(SupersampleTest, TheReferenceHasTheSameSamples) {
   for (const int aa : {2, 3}) {
     const Image picture = render::supersample(renderer, camera_, {kSquare, kSquare}, aa);
     const scene::Pose pose = scene::evaluate(scene_, 0);
-    reference::Request request{.scene = scene_, .pose = pose, .camera = camera_};
-    request.width = request.height = kSquare;
-    request.term = Term::final;
-    request.spp = 1;
-    request.aa = aa;
-    const Image truth = reference::render(request).image;
+    reference::Request asked = test::request(scene_, pose, camera_, glm::ivec2(kSquare), Term::final, 1);
+    asked.aa = aa;
+    const Image truth = reference::render(asked).image;
     for (int y = 0; y < kSquare; ++y)
       for (int x = 0; x < kSquare; ++x) {
         EXPECT_NEAR(picture.at(x, y, 0), truth.at(x, y, 0), 1e-6f) << aa << ' ' << x << ' ' << y;

@@ -92,23 +92,15 @@ class FarTest : public RenderTest {
  protected:
   static Image picture(const scene::Scene& scene, std::vector<render::TechniqueUse> techniques) {
     render::Renderer renderer(device(), scene);
-    render::Settings settings;
-    settings.size = {48, 48};
-    settings.techniques = std::move(techniques);
-    settings.term = Term::final;
-    renderer.configure(settings);
-    renderer.setCamera(scene::evaluate(scene, 0).cameras.front());
-    renderer.render();
-    return renderer.read();
+    return PictureTest::picture(renderer, settings(48, 48, Term::final, std::move(techniques)),
+                                scene::evaluate(scene, 0).cameras.front());
   }
   static Image truth(const scene::Scene& scene) {
     const scene::Pose pose = scene::evaluate(scene, 0);
-    reference::Request request{.scene = scene, .pose = pose, .camera = pose.cameras.front()};
-    request.width = request.height = 48;
-    request.term = Term::final;
-    request.bounces = 1;
-    request.spp = 16;
-    return reference::render(request).image;
+    reference::Request asked =
+        test::request(scene, pose, pose.cameras.front(), glm::ivec2(48), Term::final, 16);
+    asked.bounces = 1;
+    return reference::render(asked).image;
   }
 };
 

@@ -125,17 +125,11 @@ TEST_F(MediaTruth, TheLightsOfAnEvenEnvironmentScatterAllItsLight) {
   scene.medium.sigmaS = vec3(0.4f);
   scene.medium.g = 0.3f;
   const scene::Pose pose = scene::evaluate(scene, 0);
-  reference::Request request{.scene = scene,
-                             .pose = pose,
-                             .camera = scene::lookAt({0, 1, 2.4f}, {0, 0.5f, 0}, 0.7f),
-                             .progress = {},
-                             .checkpoint = {}};
-  request.width = request.height = 8;
-  request.term = Term::media;
-  request.spp = 256;
+  reference::Request asked = test::request(scene, pose, scene::lookAt({0, 1, 2.4f}, {0, 0.5f, 0}, 0.7f),
+                                           glm::ivec2(8), Term::media, 256);
   const auto light = [&](int index) {
-    request.light = index;
-    const Image image = reference::render(request).image;
+    asked.light = index;
+    const Image image = reference::render(asked).image;
     double sum = 0;
     for (int y = 0; y < 8; ++y)
       for (int x = 0; x < 8; ++x) sum += double(image.at(x, y, 0));

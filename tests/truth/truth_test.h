@@ -45,24 +45,16 @@ class TruthTest : public RenderTest {
     render::Renderer renderer(device(), scene);
     render::Settings s = settings(q.size.x, q.size.y, q.term, q.techniques);
     s.channels = true;
-    renderer.configure(std::move(s));
-    renderer.setCamera(q.camera);
-    renderer.render();
-    return renderer.read();
+    return picture(renderer, std::move(s), q.camera);
   }
 
   static Image referenceOf(const scene::Scene& scene, const Question& q) {
     const scene::Pose pose = scene::evaluate(scene, 0);
-    reference::Request request{
-        .scene = scene, .pose = pose, .camera = q.camera, .progress = {}, .checkpoint = {}};
-    request.width = q.size.x;
-    request.height = q.size.y;
-    request.term = q.term;
-    request.spp = q.spp;
-    request.bounces = q.bounces;
-    request.interfaces = q.interfaces;
-    request.subsurface = q.subsurface;
-    return reference::render(request).image;
+    reference::Request asked = test::request(scene, pose, q.camera, q.size, q.term, q.spp);
+    asked.bounces = q.bounces;
+    asked.interfaces = q.interfaces;
+    asked.subsurface = q.subsurface;
+    return reference::render(asked).image;
   }
 
   /// `expected` says, of what a pixel shows (position and unit direction from the eye), the radiance of its
