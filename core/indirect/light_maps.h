@@ -2,6 +2,7 @@
 // per map. The techniques fill the maps.
 #pragma once
 
+#include <optional>
 #include <string_view>
 
 #include "core/indirect/gather.h"
@@ -20,6 +21,22 @@ struct LightMapDesc {
 /// look out of the scene, so that nothing is drawn for them.
 LIMN_API frame::BufferHandle addLightViews(frame::FrameGraph& graph, const TechniqueInputs& inputs,
                                            const VirtualLights& lights, const LightMapDesc& desc);
+
+/// Holds what some virtual lights have, whatever surfaces they light (MadeForLights).
+struct LightMaps {
+  frame::BufferHandle views;               ///< addLightViews()
+  std::optional<ParaboloidMaps> all = {};  ///< where the maps of all lights exist at once
+
+  /// Returns the maps of some of the lights: what `draw` returns, which is called once where those of all
+  /// exist at once (`atOnce`). Batches share memory, so that each request draws them again.
+  template <class Draw>
+  ParaboloidMaps get(bool atOnce, Draw draw) {
+    if (all) return *all;
+    const ParaboloidMaps drawn = draw();
+    if (atOnce) all = drawn;
+    return drawn;
+  }
+};
 
 /// Returns the pass that shades virtual lights maps.first to maps.first + maps.count. A receiver does not see
 /// a light whose map holds, at the receiver's texel, something nearer that lies above the receiver's tangent

@@ -51,21 +51,6 @@ class ImperfectShadowMaps : public Technique {
                                       .stress = kStress};
 
  private:
-  /// Holds what some lights have, whatever surfaces are lit.
-  struct Made {
-    frame::BufferHandle views;
-    std::optional<indirect::ParaboloidMaps> maps = {};  ///< of all virtual lights, where they exist at once
-  };
-
-  /// Returns the maps of some of the lights. Batches share memory, so that each request fills them again.
-  indirect::ParaboloidMaps maps(frame::FrameGraph& graph, const TechniqueInputs& inputs, Made& made,
-                                const indirect::PointMapDesc& desc) {
-    if (made.maps) return *made.maps;
-    const indirect::ParaboloidMaps filled = points_->add(graph, inputs.gpuScene.device(), made.views, desc);
-    if (desc.cacheable) made.maps = filled;
-    return filled;
-  }
-
   frame::TextureHandle addPasses(frame::FrameGraph& graph, const TechniqueInputs& inputs,
                                  const TermRequest& request) override {
     if (request.lights.empty()) {
@@ -77,9 +62,10 @@ class ImperfectShadowMaps : public Technique {
         request.lights, indirect::virtualLightDesc(p));
     const int size = p.integer("map_size");
     const int batch = std::min(lights.count, indirect::paraboloidBatch(inputs.gpuScene.device(), size));
-    Made& made = made_.get(request.lights, [&] {
-      return Made{.views = indirect::addLightViews(graph, inputs, lights,
-                                                   {.size = size, .batch = batch, .technique = info.name})};
+    indirect::LightMaps& maps = maps_.get(request.lights, [&] {
+      return indirect::LightMaps{
+          .views = indirect::addLightViews(graph, inputs, lights,
+                                           {.size = size, .batch = batch, .technique = info.name})};
     });
     const int points = p.integer("points");
     if (!points_) {
@@ -88,16 +74,17 @@ class ImperfectShadowMaps : public Technique {
     }
     indirect::Gather gather(graph, inputs, info.name, lights, indirect::gatherSettings(p));
     for (int first = 0; first < lights.count; first += batch) {
-      const indirect::ParaboloidMaps filled = maps(graph, inputs, made,
-                                                   {.count = std::min(batch, lights.count - first),
-                                                    .first = first,
-                                                    .size = size,
-                                                    .points = points,
-                                                    .splat = p.real("splat"),
-                                                    .fillLevels = p.integer("fill_levels"),
-                                                    .fillDepth = p.real("fill_depth"),
-                                                    .technique = info.name,
-                                                    .cacheable = batch == lights.count});
+      const indirect::PointMapDesc desc{.count = std::min(batch, lights.count - first),
+                                        .first = first,
+                                        .size = size,
+                                        .points = points,
+                                        .splat = p.real("splat"),
+                                        .fillLevels = p.integer("fill_levels"),
+                                        .fillDepth = p.real("fill_depth"),
+                                        .technique = info.name,
+                                        .cacheable = batch == lights.count};
+      const indirect::ParaboloidMaps filled = maps.get(
+          desc.cacheable, [&] { return points_->add(graph, inputs.gpuScene.device(), maps.views, desc); });
       gather.shade(indirect::lightMapShadePass(inputs, filled, p.real("bias")));
     }
     return gather.finish(request.target);
@@ -108,7 +95,7 @@ class ImperfectShadowMaps : public Technique {
     return false;
   }
 
-  indirect::MadeForLights<Made> made_;
+  indirect::MadeForLights<indirect::LightMaps> maps_;
   std::optional<indirect::PointMapPass> points_;  ///< empty: nobody has asked yet
 };
 

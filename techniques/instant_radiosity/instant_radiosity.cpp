@@ -2,7 +2,6 @@
 #include <algorithm>
 #include <array>
 #include <deque>
-#include <optional>
 
 #include "core/gpu_scene/gpu_scene.h"
 #include "core/indirect/light_maps.h"
@@ -43,22 +42,6 @@ class InstantRadiosity : public Technique {
                                       .stress = kStress};
 
  private:
-  /// Holds what some lights have, whatever surfaces are lit.
-  struct Made {
-    frame::BufferHandle views;
-    std::optional<indirect::ParaboloidMaps> maps = {};  ///< of all virtual lights, where they exist at once
-  };
-
-  /// Returns the maps of some of the lights. Batches share memory, so that each request draws them again.
-  indirect::ParaboloidMaps maps(frame::FrameGraph& graph, const TechniqueInputs& inputs, Made& made,
-                                const indirect::ParaboloidDesc& desc) {
-    if (made.maps) return *made.maps;
-    const indirect::ParaboloidMaps drawn =
-        passes_.emplace_back().add(graph, inputs.gpuScene, inputs.handles, made.views, desc);
-    if (desc.cacheable) made.maps = drawn;
-    return drawn;
-  }
-
   frame::TextureHandle addPasses(frame::FrameGraph& graph, const TechniqueInputs& inputs,
                                  const TermRequest& request) override {
     if (request.lights.empty()) {
@@ -72,25 +55,28 @@ class InstantRadiosity : public Technique {
     const int64_t fitting = (int64_t{p.integer("memory")} << 20) / indirect::paraboloidBytes(size);
     const int batch = static_cast<int>(std::clamp<int64_t>(
         fitting, 1, std::min(lights.count, indirect::paraboloidBatch(inputs.gpuScene.device(), size))));
-    Made& made = made_.get(request.lights, [&] {
-      return Made{.views = indirect::addLightViews(graph, inputs, lights,
-                                                   {.size = size, .batch = batch, .technique = info.name})};
+    indirect::LightMaps& maps = maps_.get(request.lights, [&] {
+      return indirect::LightMaps{
+          .views = indirect::addLightViews(graph, inputs, lights,
+                                           {.size = size, .batch = batch, .technique = info.name})};
     });
     indirect::Gather gather(graph, inputs, info.name, lights, indirect::gatherSettings(p));
     for (int first = 0; first < lights.count; first += batch) {
       const int count = std::min(batch, lights.count - first);
-      const indirect::ParaboloidMaps drawn = maps(graph, inputs, made,
-                                                  {.count = count,
-                                                   .first = first,
-                                                   .size = size,
-                                                   .technique = info.name,
-                                                   .cacheable = count == lights.count});
+      const indirect::ParaboloidDesc desc{.count = count,
+                                          .first = first,
+                                          .size = size,
+                                          .technique = info.name,
+                                          .cacheable = count == lights.count};
+      const indirect::ParaboloidMaps drawn = maps.get(desc.cacheable, [&] {
+        return passes_.emplace_back().add(graph, inputs.gpuScene, inputs.handles, maps.views, desc);
+      });
       gather.shade(indirect::lightMapShadePass(inputs, drawn, p.real("bias")));
     }
     return gather.finish(request.target);
   }
 
-  indirect::MadeForLights<Made> made_;
+  indirect::MadeForLights<indirect::LightMaps> maps_;
   std::deque<indirect::ParaboloidMapPass> passes_;  ///< the graph keeps their addresses
 };
 
