@@ -8,73 +8,16 @@
 #include <utility>
 
 #include "core/base/error.h"
-#include "core/scene/material_model.h"
-#include "glsl/diffusion/boundary.glsl"
-#include "tests/gpu/bump_floor.h"
+#include "tests/gpu/bump_bounces.h"
 #include "tests/support/relief_bounces.h"
 
 namespace limn {
 namespace {
 
-constexpr float kAlbedo = 0.7f;
 constexpr double kIrradiance = 2;  // of the floor's light
-const std::vector<std::string> kSpaces{"pixel", "texture"};
 
-class BumpInterreflectionTest : public BumpFloorTest {
+class BumpInterreflectionTest : public BumpBouncesTest {
  protected:
-  using Values = std::vector<std::pair<std::string, std::string>>;
-
-  static scene::Scene bumps(const glm::vec3& towards, relief::HeightField field) {
-    scene::Scene scene = floorUnder(towards, {std::move(field)});
-    scene.materials[0].baseColour = glm::vec4(kAlbedo, kAlbedo, kAlbedo, 1);
-    return scene;
-  }
-
-  /// Bumps and dents in rows, 3 of each along an axis, whose RMS slope is 0.94.
-  static relief::HeightField eggCrate(double scale = 0.141) {
-    constexpr int size = 64;
-    std::vector<float> values;
-    for (int y = 0; y < size; ++y)
-      for (int x = 0; x < size; ++x)
-        values.push_back(std::sin(6 * glsl::pi * (static_cast<float>(x) + 0.5f) / size) *
-                         std::sin(6 * glsl::pi * (static_cast<float>(y) + 0.5f) / size));
-    return {{size, size}, values, glm::dvec2(2), scale};
-  }
-
-  static glm::vec3 slantedLight() {
-    const float elevation = 35 * glsl::pi / 180;
-    return {std::cos(elevation) * std::cos(0.5f), std::sin(elevation), std::cos(elevation) * std::sin(0.5f)};
-  }
-
-  Image light(const scene::Scene& scene, const Values& values,
-              std::vector<frame::PassReport>* passes = nullptr) {
-    return drawn(scene, Term::indirect, {technique("bump_interreflection", values)}, passes);
-  }
-
-  /// The scene with bumps that scatter below their surface, whose albedo is their base colour.
-  static scene::Scene body(scene::Scene scene, float ior) {
-    scene.materials[0].ior = ior;
-    scene.materials[0].subsurface =
-        scene::Subsurface{.extinction = glm::vec3(1e6f), .absorption = glm::vec3(0.1f)};
-    return scene;
-  }
-
-  /// What leaves translucent bumps of the light that others send them, where it entered.
-  Image subsurfaceLight(const scene::Scene& scene, const Values& values) {
-    const Image direct = drawn(scene, Term::subsurface, {});
-    Image all = drawn(scene, Term::subsurface, {technique("bump_interreflection", values)});
-    for (int y = 0; y < kSide; ++y)
-      for (int x = 0; x < kSide; ++x) all.at(x, y, 0) -= direct.at(x, y, 0);
-    return all;
-  }
-
-  /// The sum over the points of the floor.
-  static double sumOf(const Image& picture) {
-    double sum = 0;
-    forEachPoint(picture, [&](float value, const glm::vec3&) { sum += static_cast<double>(value); });
-    return sum;
-  }
-
   struct Difference {
     double rms;   ///< over the RMS of what is expected
     double mean;  ///< over the mean of what is expected
@@ -324,98 +267,6 @@ TEST_F(BumpInterreflectionTest, SourcesAreAnsweredForPixelByPixelBesideFlatSurfa
       lit += texture.at(x, y, 0) > 0;
     }
   EXPECT_GT(lit, 1000);
-}
-
-/// One bounce is as bright as the square of the albedo. That of Banks's kd is 8/3 of it, at most 1, as the
-/// integral of cos(l) sin(l, t) over the hemisphere is 8/3. Through a coat of index 1.5 pass 1 - 0.0918 of
-/// diffuse light (Duntley 1942), and 0.9082 / 1.5^2 = 0.4036 of what the base sends up, so that of a base of
-/// albedo a leave 0.9082 a 0.4036 / (1 - a + 0.4036 a). Albedos that are stored in 16 bits and 0.0918 are off
-/// by 1e-4.
-TEST_F(BumpInterreflectionTest, BumpsOfModelsReflectTheAlbedoOfTheirDiffusePart) {
-  const scene::Scene lambertian = bumps(slantedLight(), eggCrate());
-  const auto model = [](uint32_t kind, float kd, uint32_t options = 0) {
-    glsl::MaterialModel m{};
-    m.kind = kind;
-    m.options = options;
-    m.eta = glm::vec3(1.5f);
-    m.exponent = 20;
-    m.kd = glm::vec3(kd);
-    return m;
-  };
-  const struct {
-    const char* name;
-    glsl::MaterialModel model;
-    double albedo;
-  } cases[] = {
-      {"phong", model(glsl::model_phong, 0.5f), 0.5},
-      {"banks", model(glsl::model_banks, 0.3f), 0.8},
-      {"banks, bright", model(glsl::model_banks, 0.5f), 1},
-      {"coat, sum", model(glsl::model_coated, 0.7f), 0.7},
-      {"coat, blend", model(glsl::model_coated, 0.7f, glsl::model_option_blend), 0.7 * 0.9082},
-      {"coat, physical", model(glsl::model_coated, 0.7f, glsl::model_option_physical),
-       0.9082 * 0.7 * 0.4036 / (1 - 0.7 + 0.4036 * 0.7)},
-  };
-  for (const std::string& space : kSpaces) {
-    const double plain = sumOf(light(lambertian, {{"space", space}}));
-    ASSERT_GT(plain, 10);
-    for (const auto& [name, of, albedo] : cases) {
-      scene::Scene scene = lambertian;
-      scene::setModel(scene.materials[0], of);
-      const double ratio = albedo / static_cast<double>(kAlbedo);
-      EXPECT_NEAR(sumOf(light(scene, {{"space", space}})) / plain, ratio * ratio, 1e-3)
-          << name << ", " << space;
-    }
-  }
-}
-
-/// Without a boundary's reflection a translucent surface whose light leaves where it entered is a Lambertian
-/// one. Albedos are stored in 16 bits; the mean reflectance at an index of 1 is 0 to within 1e-5.
-TEST_F(BumpInterreflectionTest, BumpsOfABodySendItsAlbedo) {
-  const scene::Scene opaque = bumps({0, 1, 0}, groove());
-  for (const std::string& space : kSpaces)
-    for (const std::string bounces : {"1", "3"}) {
-      SCOPED_TRACE(space + ", " + bounces);
-      const Image expected = light(opaque, {{"space", space}, {"bounces", bounces}}),
-                  found = subsurfaceLight(body(opaque, 1), {{"space", space}, {"bounces", bounces}});
-      EXPECT_GT(sumOf(expected), 100);
-      for (int y = 0; y < kSide; ++y)
-        for (int x = 0; x < kSide; ++x) ASSERT_NEAR(found.at(x, y, 0), expected.at(x, y, 0), 2e-4f);
-    }
-}
-
-/// The whole picture asks twice: for what bumps reflect at their boundaries, and for what enters them.
-TEST_F(BumpInterreflectionTest, FinalPicturesOfBodiesAreAlikeInBothSpaces) {
-  const scene::Scene scene = body(bumps(slantedLight(), eggCrate()), 1.5f);
-  const auto whole = [&](const std::string& space) {
-    return sumOf(drawn(scene, Term::final, {technique("bump_interreflection", {{"space", space}})}));
-  };
-  EXPECT_NEAR(whole("texture") / whole("pixel"), 1, 0.01);
-}
-
-/// What an index of refraction changes of the second bounce over the first, at each pixel, is the mean share
-/// of light that another boundary lets in.
-TEST_F(BumpInterreflectionTest, EachBumpOfABodyLetsInItsBoundarysShare) {
-  constexpr float ior = 1.5f;
-  const scene::Scene opaque = bumps({0, 1, 0}, groove());
-  const auto bounced = [&](float index, const char* bounces) {
-    return subsurfaceLight(body(opaque, index), {{"space", "texture"}, {"bounces", bounces}});
-  };
-  const Image first = bounced(ior, "1"), both = bounced(ior, "2"), plainFirst = bounced(1, "1"),
-              plainBoth = bounced(1, "2");
-  const auto secondOverFirst = [](const Image& one, const Image& two, int x, int y) {
-    return two.at(x, y, 0) / one.at(x, y, 0) - 1;
-  };
-  const float share = glsl::diffusion_boundary(ior).entering;
-  int counted = 0;
-  for (int y = 0; y < kSide; ++y)
-    for (int x = 0; x < kSide; ++x) {
-      // Near crests, which see nothing of the other wall, nothing is left to divide by.
-      if (plainFirst.at(x, y, 0) < 0.01f) continue;
-      ASSERT_NEAR(secondOverFirst(first, both, x, y) / secondOverFirst(plainFirst, plainBoth, x, y), share,
-                  0.01f);
-      ++counted;
-    }
-  EXPECT_GT(counted, 4000);
 }
 
 TEST_F(BumpInterreflectionTest, ScalesWithTheLightAndAddsUpOverLights) {

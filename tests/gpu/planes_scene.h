@@ -2,6 +2,8 @@
 #pragma once
 
 #include <algorithm>
+#include <map>
+#include <string>
 
 #include "tests/gpu/technique_harness.h"
 #include "tests/support/test_scenes.h"
@@ -25,6 +27,21 @@ struct Planes {
     addInstance(scene, pose, static_cast<int>(scene.meshes.size()) - 1, place);
   }
   glm::vec3 position(const Answer& v, int x, int y) const { return positionOf(v, camera, pose.bounds, x, y); }
+};
+
+class PlanesTest : public TechniqueTest {
+ protected:
+  using Settings = std::map<std::string, std::string>;
+
+  /// V of the light, in maps of 256 texels where `settings` do not say otherwise.
+  Answer answer(const Planes& s, Settings settings = {}, const std::string& name = "vssm") {
+    settings.try_emplace("shadow_map_size", "256");
+    Answer v = visibility(name, settings, s.scene, s.pose, s.camera);
+    int bad = 0;
+    for (const float value : v.lights[0]) bad += !(value >= 0 && value <= 1);
+    EXPECT_EQ(bad, 0) << name << ": outside [0, 1] or NaN";
+    return v;
+  }
 };
 
 /// The share of the light, which is `light` m wide along one axis and 4 m above the floor, that a square of

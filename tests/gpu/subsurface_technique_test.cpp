@@ -54,6 +54,14 @@ class SubsurfaceTechniqueTest : public RenderTest {
     return renderer.read();
   }
 
+  /// The picture of a ball of radius 1 at a time of the scene's first animation.
+  static Image pictureAt(render::Renderer& renderer, double time) {
+    renderer.setTime(time, 0);
+    renderer.setCamera(scene::lookAt({0.5f, 1.5f, 4}, vec3(0), 0.7f));
+    renderer.render();
+    return renderer.read();
+  }
+
   /// Those under test, whose light spreads as far as the half space's albedo says.
   static std::vector<render::TechniqueUse> uses() {
     std::vector<render::TechniqueUse> all;
@@ -199,10 +207,7 @@ TEST_F(SubsurfaceTechniqueTest, BodiesThatGrewAreThoseOfAFreshStart) {
   for (const render::TechniqueUse& use : uses()) {
     SCOPED_TRACE(use.plugin->info->name);
     const auto at = [&](render::Renderer& renderer, double time) {
-      renderer.setTime(time, 0);
-      renderer.setCamera(scene::lookAt({0.5f, 1.5f, 4}, vec3(0), 0.7f));
-      renderer.render();
-      const Image image = renderer.read();
+      const Image image = pictureAt(renderer, time);
       return std::vector<float>(image.data().begin(), image.data().end());
     };
     const render::Settings s = settings(kPictureSide, kPictureSide, Term::subsurface, {use});
@@ -234,15 +239,9 @@ TEST_F(SubsurfaceTechniqueTest, BodiesThatMovedAreThoseOfAFreshStart) {
     render::Settings s = settings(kPictureSide, kPictureSide, Term::subsurface, {use});
     s.dynamic = false;
     render::Renderer moved(device(), scene), fresh(device(), scene);
-    const auto at = [&](render::Renderer& renderer, double time) {
-      renderer.setTime(time, 0);
-      renderer.setCamera(scene::lookAt({0.5f, 1.5f, 4}, vec3(0), 0.7f));
-      renderer.render();
-      return renderer.read();
-    };
     moved.configure(s);
     fresh.configure(s);
-    const Image before = at(moved, 0), after = at(moved, 1), wanted = at(fresh, 1);
+    const Image before = pictureAt(moved, 0), after = pictureAt(moved, 1), wanted = pictureAt(fresh, 1);
     const double change = rmse(before, wanted);
     EXPECT_GT(change, 0.1 * mean(wanted));
     // Rounding of places decides on other clusters and charts, whose errors are some thousandths of the

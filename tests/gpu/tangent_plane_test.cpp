@@ -18,17 +18,7 @@ using namespace limn::test;
 using glm::vec3;
 using Settings = std::map<std::string, std::string>;
 
-class TangentPlaneTest : public TechniqueTest {
- protected:
-  Answer answer(const Planes& s, Settings settings, const char* name) {
-    settings.try_emplace("shadow_map_size", "256");
-    Answer v = visibility(name, settings, s.scene, s.pose, s.camera);
-    int bad = 0;
-    for (const float value : v.lights[0]) bad += !(value >= 0 && value <= 1);
-    EXPECT_EQ(bad, 0) << name << ": outside [0, 1] or NaN";
-    return v;
-  }
-};
+class TangentPlaneTest : public PlanesTest {};
 
 /// Techniques whose thresholds, moments or bounds know nothing of what lies behind the tangent plane.
 struct FromBeneath {

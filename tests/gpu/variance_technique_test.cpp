@@ -18,17 +18,7 @@ using glm::vec3;
 
 using Settings = std::map<std::string, std::string>;
 
-class VarianceTechniqueTest : public limn::test::TechniqueTest {
- protected:
-  Answer answer(const Planes& s, Settings settings = {}, const std::string& name = "vssm") {
-    settings.try_emplace("shadow_map_size", "256");
-    Answer v = visibility(name, settings, s.scene, s.pose, s.camera);
-    int bad = 0;
-    for (const float value : v.lights[0]) bad += !(value >= 0 && value <= 1);
-    EXPECT_EQ(bad, 0) << name << ": outside [0, 1] or NaN";
-    return v;
-  }
-};
+class VarianceTechniqueTest : public PlanesTest {};
 
 const Settings kVariants[] = {{{"subdivision", "uniform"}}, {{"subdivision", "adaptive"}},
                               {{"subdivision", "mixed"}},   {{"chebyshev", "pooled"}},
