@@ -52,15 +52,15 @@ TEST(ReliefEllipseTest, OfAFlatFieldIsTheDiscAndOfAPitNothing) {
 /// light. Great circles cut a round light at the ratio of tangents instead of sines: 0.0025 at most of this
 /// one. The points add 0.001.
 TEST(ReliefEllipseTest, SoftLightsAreCutByARoundHorizonAndByTheBase) {
-  constexpr double kSine = 0.15, kDegree = std::numbers::pi / 180;
+  constexpr double kSine = 0.15;
   constexpr int kPoints = 4096;
   for (const double elevation : {0.0, 3.0, 5.0, 10.0, 20.0, 40.0}) {
-    const double horizon = elevation * kDegree;
+    const double horizon = glm::radians(elevation);
     const auto variance = static_cast<float>(std::cos(horizon) * std::cos(horizon) / 4);
     const glsl::ReliefEllipse stored = glsl::relief_ellipse_unpack(glsl::relief_ellipse_pack(
         {.centre = glm::vec2(0), .xx = variance, .xy = 0, .yy = variance, .spread = 0}));
     for (const double degrees : {1.0, 2.0, 5.0, 8.0, 10.0, 15.0, 30.0, 60.0}) {
-      const double angle = degrees * kDegree;
+      const double angle = glm::radians(degrees);
       // In the plane of the light and the zenith, in azimuth 0.7.
       const glm::dvec3 l(std::cos(angle) * std::cos(0.7), std::cos(angle) * std::sin(0.7), std::sin(angle));
       const glm::dvec3 u = glm::normalize(glm::cross(l, glm::dvec3(0, 0, 1))), v = glm::cross(u, l);
