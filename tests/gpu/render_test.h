@@ -111,6 +111,12 @@ class PictureTest : public GlTest {
   /// Whether the technique has nothing to answer in scenes without height maps.
   static bool lightsBumpsAlone(const std::string& name) { return registry().find(name).info->places; }
 
+  /// Whether the technique cuts surfaces into elements, which takes long where triangles are many.
+  static bool cutsSurfaces(const std::string& name) {
+    return std::ranges::any_of(registry().find(name).info->parameters,
+                               [](const Parameter& p) { return p.name == std::string_view("longest_edge"); });
+  }
+
   /// Those with a picture of their own, and what shows it.
   static std::vector<std::pair<std::string, Term>> techniquesAndTerms() {
     std::vector<std::pair<std::string, Term>> all;

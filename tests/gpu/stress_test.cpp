@@ -45,7 +45,7 @@ class NoAnswer : public Technique {
 class StressTest : public RenderTest {
  protected:
   bench::StressRun stressRun(int spp = 4) {
-    return bench::StressRun(device(), registry(), asset, {.width = 48, .height = 36, .spp = spp});
+    return bench::StressRun(device(), registry(), coarse, {.width = 48, .height = 36, .spp = spp});
   }
 };
 

@@ -82,22 +82,26 @@ TEST_F(TechniqueTest, ShadowsOnlyTakeLightAway) {
 }
 
 TEST_F(TechniqueTest, ScaleOfTheSceneDoesNotMatter) {
-  const scene::Scene scene = asset("balls");
-  const scene::Scene small = bench::stressed(scene, StressChange::sceneScale, 1e-4f),
-                     large = bench::stressed(scene, StressChange::sceneScale, 1e4f);
-  render::Renderer renderer(device(), scene), smallRenderer(device(), small), largeRenderer(device(), large);
-  for (const auto& [name, term] : techniquesAndTerms()) {
-    const auto answer = [&](render::Renderer& of) {
-      return picture(of, settings(128, 96, term, {quick(name)}, 0));
-    };
-    const auto whole = [&](render::Renderer& of) {
-      return picture(of, settings(128, 96, Term::final, {quick(name)}));
-    };
-    const Image answered = answer(renderer), shown = whole(renderer);
-    for (render::Renderer* scaled : {&smallRenderer, &largeRenderer}) {
-      SCOPED_TRACE(name + (scaled == &smallRenderer ? " at scale 1e-4" : " at scale 1e4"));
-      EXPECT_LT(rmse(answered, answer(*scaled)), 1e-3);
-      EXPECT_LT(rmse(shown, whole(*scaled)), 1e-3);
+  for (const bool cut : {false, true}) {
+    const scene::Scene scene = cut ? coarse("balls") : asset("balls");
+    const scene::Scene small = bench::stressed(scene, StressChange::sceneScale, 1e-4f),
+                       large = bench::stressed(scene, StressChange::sceneScale, 1e4f);
+    render::Renderer renderer(device(), scene), smallRenderer(device(), small),
+        largeRenderer(device(), large);
+    for (const auto& [name, term] : techniquesAndTerms()) {
+      if (cutsSurfaces(name) != cut) continue;
+      const auto answer = [&](render::Renderer& of) {
+        return picture(of, settings(128, 96, term, {quick(name)}, 0));
+      };
+      const auto whole = [&](render::Renderer& of) {
+        return picture(of, settings(128, 96, Term::final, {quick(name)}));
+      };
+      const Image answered = answer(renderer), shown = whole(renderer);
+      for (render::Renderer* scaled : {&smallRenderer, &largeRenderer}) {
+        SCOPED_TRACE(name + (scaled == &smallRenderer ? " at scale 1e-4" : " at scale 1e4"));
+        EXPECT_LT(rmse(answered, answer(*scaled)), 1e-3);
+        EXPECT_LT(rmse(shown, whole(*scaled)), 1e-3);
+      }
     }
   }
 }
@@ -115,7 +119,7 @@ TEST_F(TechniqueTest, ExtremeResolutionsGiveFinitePictures) {
 
 TEST_F(TechniqueTest, RadianceScalesLinearlyOverTwelveDecades) {
   constexpr float kFactors[] = {1e-6f, 1e6f};
-  const scene::Scene scene = asset("balls");
+  const scene::Scene scene = coarse("balls");
   scene::Scene dim = scene, bright = scene;
   for (scene::LightSource& light : dim.lights) light.intensity *= kFactors[0];
   for (scene::LightSource& light : bright.lights) light.intensity *= kFactors[1];
@@ -134,7 +138,7 @@ TEST_F(TechniqueTest, RadianceScalesLinearlyOverTwelveDecades) {
 }
 
 TEST_F(TechniqueTest, CameraInsideAnObjectGivesAFinitePicture) {
-  const scene::Scene scene = asset("balls");
+  const scene::Scene scene = coarse("balls");
   render::Renderer renderer(device(), scene);
   scene::CameraPose camera = renderer.pose().cameras.at(0);
   for (const auto& [name, term] : techniquesAndTerms()) {
