@@ -28,6 +28,7 @@ constexpr Parameter kParameters[] = {
 };
 constexpr StressCase kStress[] = {
     {.name = "one stretch", .settings = "steps=1", .factor = 20},
+    {.name = "a third of the stretches", .settings = "steps=16", .factor = 2},
     {.name = "map of 16 texels", .settings = "shadow_map_size=16", .factor = 20},
 };
 
