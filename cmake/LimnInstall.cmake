@@ -8,6 +8,7 @@ set(LIMN_INSTALL_CMAKE ${CMAKE_INSTALL_LIBDIR}/cmake/limn)
 install(TARGETS limn limn_reference EXPORT limnTargets LIBRARY DESTINATION ${CMAKE_INSTALL_LIBDIR})
 install(TARGETS limn_bench limn_session LIBRARY DESTINATION ${CMAKE_INSTALL_LIBDIR})
 install(TARGETS limn_read_grid limn_read_draco RUNTIME DESTINATION ${CMAKE_INSTALL_LIBDIR}/limn)
+install(TARGETS limn_image_files LIBRARY DESTINATION ${CMAKE_INSTALL_LIBDIR}/limn)
 install(EXPORT limnTargets NAMESPACE limn:: DESTINATION ${LIMN_INSTALL_CMAKE})
 
 # The headers of module_headers.txt, what these include, and all shared GLSL. Those of an earlier limn go first: the hash that

@@ -1,7 +1,5 @@
-// Reading picture files. OpenImageIO decodes in memory, but for WebP, which libwebp decodes; files are read
-// whole.
-#include <OpenImageIO/filesystem.h>
-#include <OpenImageIO/imageio.h>
+// Reading picture files. They are read whole and decoded in memory: WebP by libwebp, others by the library of
+// core/image/files.
 #include <fmt/format.h>
 
 #include <algorithm>
@@ -13,6 +11,7 @@
 #include "core/base/file.h"
 #include "core/image/image.h"
 #include "core/image/private/image_codec.h"
+#include "core/image/private/image_files.h"
 #include "core/image/private/image_format.h"
 #include "core/image/private/webp.h"
 #include "glsl/numeric/srgb.glsl"
@@ -38,17 +37,6 @@ const char* decoderName(ImageFormat format) {
   return "";
 }
 
-/// What decoders read from: a file of `bytes`. OpenImageIO's reader follows offsets before the first byte,
-/// which an EXR's table of lines may hold.
-class MemoryFile : public OIIO::Filesystem::IOMemReader {
- public:
-  explicit MemoryFile(std::span<const std::byte> bytes) : IOMemReader(bytes.data(), bytes.size()) {}
-  bool seek(std::int64_t offset) override { return offset >= 0 && IOMemReader::seek(offset); }
-  std::size_t pread(void* target, std::size_t size, std::int64_t offset) override {
-    return offset < 0 ? 0 : IOMemReader::pread(target, size, offset);
-  }
-};
-
 /// Throws Error where a picture of a file of `file` bytes exceeds the limits.
 void checkSize(std::int64_t width, std::int64_t height, std::int64_t channels, std::size_t file,
                const std::string& name) {
@@ -69,69 +57,73 @@ void checkSize(std::int64_t width, std::int64_t height, std::int64_t channels, s
   }
 }
 
-/// An opened decoder whose size has been checked against the limits; nothing of that size is allocated yet.
-class Decoder {
+/// An opened file whose size has been checked against the limits; nothing of that size is allocated yet.
+class Picture {
  public:
-  Decoder(std::span<const std::byte> bytes, const std::string& name)
-      : name_(name), format_(detectImageFormat(bytes, name)), memory_(bytes) {
+  Picture(std::span<const std::byte> bytes, const std::string& name)
+      : name_(name), format_(detectImageFormat(bytes, name)) {
     const std::string problem = imageFileProblem(bytes, format_);
     if (!problem.empty()) fail(problem);
-    input_ = OIIO::ImageInput::create(decoderName(format_), false);
-    if (!input_) fail(OIIO::geterror());
-    input_->set_ioproxy(&memory_);
-    OIIO::ImageSpec wanted;
-    wanted.attribute("oiio:UnassociatedAlpha", 1);
-    if (!input_->open(name, spec_, wanted)) fail(input_->geterror());
-    stored_ = spec_.roi();
+    decoder_ = image_files::library().open(bytes, decoderName(format_), name);
+    const image_files::Header& header = decoder_->header();
     // Offsets of a PNG are those of a page that it is printed on.
-    if (format_ == ImageFormat::exr) spec_.set_roi(spec_.roi_full());
-    checkSize();
+    window_ = format_ == ImageFormat::exr ? header.whole : header.stored;
+    if (header.deep) fail("deep and volume pictures are not accepted");
+    for (const image_files::Window& window : {header.stored, window_})
+      checkSize(window.width, window.height, header.channels, bytes.size(), name);
     // Elsewhere it is a note beside the picture, which glTF ignores; here it is the order of what is stored.
-    if (format_ == ImageFormat::hdr) orientation_ = spec_.get_int_attribute("Orientation", 1);
+    if (format_ == ImageFormat::hdr) orientation_ = header.orientation;
     if (orientation_ > 4)
       fail("a size that begins with X (columns); one that begins with -Y or +Y is accepted");
   }
 
   /// Of the whole picture: an EXR may hold a part of it, or more than it.
-  const OIIO::ImageSpec& spec() const { return spec_; }
+  int width() const { return window_.width; }
+  int height() const { return window_.height; }
+  const image_files::Header& header() const { return decoder_->header(); }
   bool isSrgb() const { return format_ == ImageFormat::png || format_ == ImageFormat::jpeg; }
   ImageFormat format() const { return format_; }
 
-  void read(const OIIO::TypeDesc& type, void* target) { readFirst(spec_.nchannels, type, target); }
+  void read(image_files::Values values, void* target) { readFirst(header().channels, values, target); }
   /// Leaves what the file does not hold as it is.
-  void readFirst(int channels, const OIIO::TypeDesc& type, void* target) {
-    const OIIO::ROI picture = spec_.roi();
-    if (stored_ == picture) return readStored(channels, type, target);
-    const std::size_t pixelBytes = static_cast<std::size_t>(channels) * type.size();
-    std::vector<std::byte> stored(stored_.npixels() * pixelBytes);
-    readStored(channels, type, stored.data());
-    const OIIO::ROI shared = OIIO::roi_intersection(stored_, picture);
-    if (shared.xbegin >= shared.xend) return;
-    for (int y = shared.ybegin; y < shared.yend; ++y) {
-      const auto startIn = [&](const OIIO::ROI& window) {
-        const auto row = static_cast<std::size_t>(y - window.ybegin);
-        return (row * static_cast<std::size_t>(window.width()) +
-                static_cast<std::size_t>(shared.xbegin - window.xbegin)) *
+  void readFirst(int channels, image_files::Values values, void* target) {
+    const image_files::Window& stored = header().stored;
+    if (stored == window_) return readStored(channels, values, target);
+    const std::size_t pixelBytes = bytesOfPixel(channels, values);
+    std::vector<std::byte> all(static_cast<std::size_t>(stored.width) *
+                               static_cast<std::size_t>(stored.height) * pixelBytes);
+    readStored(channels, values, all.data());
+    const int left = std::max(stored.x, window_.x), top = std::max(stored.y, window_.y);
+    const int right = std::min(stored.x + stored.width, window_.x + window_.width);
+    const int bottom = std::min(stored.y + stored.height, window_.y + window_.height);
+    if (left >= right) return;
+    for (int y = top; y < bottom; ++y) {
+      const auto startIn = [&](const image_files::Window& window) {
+        return (static_cast<std::size_t>(y - window.y) * static_cast<std::size_t>(window.width) +
+                static_cast<std::size_t>(left - window.x)) *
                pixelBytes;
       };
-      std::memcpy(static_cast<std::byte*>(target) + startIn(picture), stored.data() + startIn(stored_),
-                  static_cast<std::size_t>(shared.width()) * pixelBytes);
+      std::memcpy(static_cast<std::byte*>(target) + startIn(window_), all.data() + startIn(stored),
+                  static_cast<std::size_t>(right - left) * pixelBytes);
     }
   }
 
  private:
-  void readStored(int channels, const OIIO::TypeDesc& type, void* target) {
-    if (!input_->read_image(0, 0, 0, channels, type, target)) fail(input_->geterror());
-    turn(static_cast<std::byte*>(target), static_cast<std::size_t>(channels) * type.size());
+  static std::size_t bytesOfPixel(int channels, image_files::Values values) {
+    return static_cast<std::size_t>(channels) * (values == image_files::Values::floats ? sizeof(float) : 1);
   }
 
-  /// Moves pixels from where the file has them to where they are seen, which OpenImageIO leaves to its
-  /// caller.
+  void readStored(int channels, image_files::Values values, void* target) {
+    decoder_->read(channels, values, target);
+    turn(static_cast<std::byte*>(target), bytesOfPixel(channels, values));
+  }
+
+  /// Moves pixels from where the file has them to where they are seen, which decoders leave to their caller.
   void turn(std::byte* pixels, std::size_t pixelBytes) const {
     const bool fromBelow = orientation_ == 3 || orientation_ == 4;
     const bool fromTheRight = orientation_ == 2 || orientation_ == 3;
-    const auto width = static_cast<std::size_t>(stored_.width()),
-               height = static_cast<std::size_t>(stored_.height());
+    const auto width = static_cast<std::size_t>(header().stored.width),
+               height = static_cast<std::size_t>(header().stored.height);
     const auto pixel = [&](std::size_t x, std::size_t y) { return pixels + (y * width + x) * pixelBytes; };
     for (std::size_t y = 0; fromBelow && y < height / 2; ++y)
       std::swap_ranges(pixel(0, y), pixel(width, y), pixel(0, height - 1 - y));
@@ -144,24 +136,16 @@ class Decoder {
     throw Error(fmt::format("{}: {}", name_, reasonOf(reason)));
   }
 
-  void checkSize() const {
-    if (spec_.deep || spec_.depth > 1) fail("deep and volume pictures are not accepted");
-    for (const OIIO::ROI& window : {stored_, spec_.roi()})
-      limn::checkSize(window.width(), window.height(), spec_.nchannels, memory_.size(), name_);
-  }
-
   std::string name_;
   ImageFormat format_;
-  MemoryFile memory_;
-  std::unique_ptr<OIIO::ImageInput> input_;
-  OIIO::ImageSpec spec_;
-  OIIO::ROI stored_;     // the pixels that the file holds
-  int orientation_ = 1;  // of EXIF: the sides on which the first row and the first column are seen
+  std::unique_ptr<image_files::Decoder> decoder_;
+  image_files::Window window_;
+  int orientation_ = 1;
 };
 
-std::vector<std::string> channelNames(const Decoder& decoder) {
-  if (!decoder.isSrgb()) return decoder.spec().channelnames;
-  switch (decoder.spec().nchannels) {
+std::vector<std::string> channelNames(const Picture& picture) {
+  if (!picture.isSrgb()) return picture.header().names;
+  switch (picture.header().channels) {
     case 1:
       return {"Y"};
     case 2:
@@ -203,41 +187,37 @@ Image decodeLinearWebp(std::span<const std::byte> bytes, const std::string& name
 
 Image decode(std::span<const std::byte> bytes, const std::string& name) {
   if (isWebp(bytes)) return decodeLinearWebp(bytes, name);
-  Decoder decoder(bytes, name);
-  const std::vector<std::string> names = channelNames(decoder);
-  if (names.size() != static_cast<std::size_t>(decoder.spec().nchannels)) {
-    throw Error(fmt::format("{}: {} channels without names", name, decoder.spec().nchannels));
+  Picture picture(bytes, name);
+  const std::vector<std::string> names = channelNames(picture);
+  if (names.size() != static_cast<std::size_t>(picture.header().channels)) {
+    throw Error(fmt::format("{}: {} channels without names", name, picture.header().channels));
   }
   Image image = [&] {
     try {
-      return Image(decoder.spec().width, decoder.spec().height, names);
+      return Image(picture.width(), picture.height(), names);
     } catch (const Error& failure) {
       throw Error(fmt::format("{}: {}", name, failure.what()));
     }
   }();
-  decoder.read(OIIO::TypeDesc::FLOAT, image.data().data());
-  if (decoder.isSrgb()) decodeSrgb(image);
-  for (const OIIO::ParamValue& attribute : decoder.spec().extra_attribs) {
-    const std::string key = attribute.name().string();
-    if (key.starts_with(kMetadataPrefix) && attribute.type() == OIIO::TypeString) {
-      image.metadata()[key.substr(std::strlen(kMetadataPrefix))] = attribute.get_string();
-    }
-  }
+  picture.read(image_files::Values::floats, image.data().data());
+  if (picture.isSrgb()) decodeSrgb(image);
+  for (const auto& [key, text] : picture.header().texts)
+    if (key.starts_with(kMetadataPrefix)) image.metadata()[key.substr(std::strlen(kMetadataPrefix))] = text;
   return image;
 }
 
 Image8 decode8(std::span<const std::byte> bytes, const std::string& name) {
   if (isWebp(bytes)) return decodeWebp8(bytes, name).first;
-  Decoder decoder(bytes, name);
-  const std::size_t channels = static_cast<std::size_t>(decoder.spec().nchannels);
-  if (!decoder.isSrgb() || channels > 4) {
+  Picture picture(bytes, name);
+  const std::size_t channels = static_cast<std::size_t>(picture.header().channels);
+  if (!picture.isSrgb() || channels > 4) {
     throw Error(fmt::format("{}: an 8-bit texture must be PNG, JPEG or WebP with 1 to 4 channels", name));
   }
   const std::size_t pixels =
-      static_cast<std::size_t>(decoder.spec().width) * static_cast<std::size_t>(decoder.spec().height);
+      static_cast<std::size_t>(picture.width()) * static_cast<std::size_t>(picture.height());
   std::vector<std::uint8_t> raw(pixels * channels);
-  decoder.read(OIIO::TypeDesc::UINT8, raw.data());
-  Image8 image{decoder.spec().width, decoder.spec().height, {}};
+  picture.read(image_files::Values::bytes, raw.data());
+  Image8 image{picture.width(), picture.height(), {}};
   if (channels == 4) {
     image.data = std::move(raw);
     return image;
@@ -254,18 +234,16 @@ Image8 decode8(std::span<const std::byte> bytes, const std::string& name) {
 
 ImageChannel decodeFirstChannel(std::span<const std::byte> bytes, const std::string& name,
                                 std::uint64_t mostPixels) {
-  Decoder decoder(bytes, name);
-  if (decoder.format() != ImageFormat::png && decoder.format() != ImageFormat::exr)
+  Picture picture(bytes, name);
+  if (picture.format() != ImageFormat::png && picture.format() != ImageFormat::exr)
     throw Error(fmt::format("{}: a PNG or an EXR is accepted", name));
-  const OIIO::ImageSpec& spec = decoder.spec();
-  const std::uint64_t pixels =
-      static_cast<std::uint64_t>(spec.width) * static_cast<std::uint64_t>(spec.height);
+  const int width = picture.width(), height = picture.height();
+  const std::uint64_t pixels = static_cast<std::uint64_t>(width) * static_cast<std::uint64_t>(height);
   if (pixels > mostPixels)
-    throw Error(
-        fmt::format("{}: {}x{} pixels; at most {} are accepted", name, spec.width, spec.height, mostPixels));
-  ImageChannel channel{spec.width, spec.height, static_cast<int>(8 * spec.format.size()), {}};
+    throw Error(fmt::format("{}: {}x{} pixels; at most {} are accepted", name, width, height, mostPixels));
+  ImageChannel channel{width, height, 8 * picture.header().valueBytes, {}};
   channel.values.resize(static_cast<std::size_t>(pixels));
-  decoder.readFirst(1, OIIO::TypeDesc::FLOAT, channel.values.data());
+  picture.readFirst(1, image_files::Values::floats, channel.values.data());
   return channel;
 }
 

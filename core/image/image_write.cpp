@@ -1,38 +1,29 @@
-// Writing picture files. OpenImageIO encodes in memory; files are written whole.
-#include <OpenImageIO/filesystem.h>
-#include <OpenImageIO/imageio.h>
+// Writing picture files. The library of core/image/files encodes in memory; files are written whole.
 #include <fmt/format.h>
 
 #include <array>
 #include <cmath>
-#include <memory>
 
 #include "core/base/error.h"
 #include "core/base/file.h"
 #include "core/image/image.h"
 #include "core/image/private/image_codec.h"
+#include "core/image/private/image_files.h"
 #include "glsl/numeric/srgb.glsl"
 
 namespace limn {
 namespace {
 
+using image_files::Encoding;
+using image_files::Values;
+
 /// Attributes of an EXR; text chunks (tEXt) of a PNG.
-void addMetadata(OIIO::ImageSpec& spec, const Image& image) {
-  for (const auto& [key, value] : image.metadata()) spec.attribute(kMetadataPrefix + key, value);
+void addMetadata(Encoding& encoding, const Image& image) {
+  for (const auto& [key, value] : image.metadata()) encoding.texts.emplace_back(kMetadataPrefix + key, value);
 }
 
-/// Encodes in memory: the encoder never sees the disk, so a full one is noticed when the file is written
-/// whole.
-std::vector<std::uint8_t> encode(const std::string& name, const char* encoder, const OIIO::ImageSpec& spec,
-                                 const OIIO::TypeDesc& type, const void* pixels) {
-  OIIO::Filesystem::IOVecOutput memory;
-  std::unique_ptr<OIIO::ImageOutput> output = OIIO::ImageOutput::create(encoder);
-  if (!output) throw Error(fmt::format("{}: {}", name, reasonOf(OIIO::geterror())));
-  output->set_ioproxy(&memory);
-  if (!output->open(name, spec) || !output->write_image(type, pixels) || !output->close()) {
-    throw Error(fmt::format("{}: {}", name, reasonOf(output->geterror())));
-  }
-  return memory.buffer();
+std::vector<std::uint8_t> encode(const std::string& name, const Encoding& encoding, const void* pixels) {
+  return guarded(name, [&] { return image_files::library().encode(encoding, pixels, name); });
 }
 
 /// R, G, B as a display shows them.
@@ -51,39 +42,44 @@ std::vector<std::uint8_t> displayValues(const Image& image, const std::string& n
   return pixels;
 }
 
-OIIO::ImageSpec displaySpec(const Image& image) {
-  OIIO::ImageSpec spec(image.width(), image.height(), 3, OIIO::TypeDesc::UINT8);
-  spec.attribute("oiio:ColorSpace", "sRGB");
-  return spec;
+Encoding displayEncoding(const char* format, const Image& image) {
+  return {.format = format,
+          .width = image.width(),
+          .height = image.height(),
+          .names = {"R", "G", "B"},
+          .values = Values::bytes,
+          .texts = {{"oiio:ColorSpace", "sRGB"}}};
 }
 
 }  // namespace
 
 void writeExr(const std::filesystem::path& path, const Image& image) {
   if (image.empty()) throw Error(fmt::format("{}: cannot write an empty image", path.string()));
-  OIIO::ImageSpec spec(image.width(), image.height(), image.channelCount(), OIIO::TypeDesc::FLOAT);
-  spec.channelnames = image.channels();
-  spec.attribute("compression", "zip");
-  spec.attribute("DateTime", "1970:01:01 00:00:00");  // otherwise the encoder looks at the clock
-  addMetadata(spec, image);
-  const std::vector<std::uint8_t> file = guarded(path.string(), [&] {
-    return encode(path.string(), "openexr", spec, OIIO::TypeDesc::FLOAT, image.data().data());
-  });
+  Encoding encoding{.format = "openexr",
+                    .width = image.width(),
+                    .height = image.height(),
+                    .names = image.channels(),
+                    .values = Values::floats,
+                    .texts = {{"compression", "zip"},
+                              // Otherwise the encoder looks at the clock.
+                              {"DateTime", "1970:01:01 00:00:00"}}};
+  addMetadata(encoding, image);
+  const std::vector<std::uint8_t> file = encode(path.string(), encoding, image.data().data());
   writeFile(path, std::as_bytes(std::span(file)));
 }
 
 std::vector<std::uint8_t> encodePng(const Image& image, const std::string& name, float exposureEv) {
   const std::vector<std::uint8_t> pixels = displayValues(image, name, exposureEv);
-  OIIO::ImageSpec spec = displaySpec(image);
-  addMetadata(spec, image);
-  return guarded(name, [&] { return encode(name, "png", spec, OIIO::TypeDesc::UINT8, pixels.data()); });
+  Encoding encoding = displayEncoding("png", image);
+  addMetadata(encoding, image);
+  return encode(name, encoding, pixels.data());
 }
 
 std::vector<std::uint8_t> encodeWebp(const Image& image, const std::string& name) {
   const std::vector<std::uint8_t> pixels = displayValues(image, name, 0);
-  OIIO::ImageSpec spec = displaySpec(image);
-  spec.attribute("compression", "webp:90");
-  return guarded(name, [&] { return encode(name, "webp", spec, OIIO::TypeDesc::UINT8, pixels.data()); });
+  Encoding encoding = displayEncoding("webp", image);
+  encoding.texts.emplace_back("compression", "webp:90");
+  return encode(name, encoding, pixels.data());
 }
 
 void writePng(const std::filesystem::path& path, const Image& image, float exposureEv) {

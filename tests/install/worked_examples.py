@@ -30,8 +30,7 @@ LINKED = ["core/base/*.cpp", "core/question/*.cpp", "core/image/*.cpp", "core/br
           "tests/unit/bench/bench_columns_test.cpp", "tests/unit/session/view_test.cpp"]
 COMPILED = ["core/gpu_scene/gpu_materials.cpp", "core/reference/surface.cpp"]  # which draw and trace: not linked
 PRECOMPILED = ["fmt/format.h", "glm/glm.hpp", "gmock/gmock.h", "gtest/gtest.h", "nlohmann/json.hpp"]
-LIBRARIES = ["gtest_main", "gtest", "gmock", "fmt", "spdlog", "tinygltf", "meshoptimizer", "OpenImageIO",
-             "OpenImageIO_Util", "tbb", "xxhash", "kissfft-float", "webp", "tomlplusplus", "dl"]
+LIBRARIES = ["gtest_main", "gtest", "gmock", "fmt", "spdlog", "tinygltf", "meshoptimizer", "tbb", "xxhash", "kissfft-float", "webp", "tomlplusplus", "dl"]
 
 
 
@@ -158,11 +157,13 @@ def build_check():
     known, free = commands(), unaffected()
     kept = [source for source in linked if known[source][1] in free]
     changed = [source for source in linked if source not in kept] + COMPILED
-    compiled = compile_all([HERE / "check.cpp", paths, *(tree / source for source in changed)], flags(known, linked + COMPILED))
+    compiled = compile_all([HERE / "check.cpp", paths, BUILD / "core/version.cpp", *(tree / source for source in changed)],
+                           flags(known, linked + COMPILED))
     program = scratch / "bin/check"  # which finds scenes and suites as limn does: beside the folder it is in
     program.parent.mkdir()
     for folder in ("assets", "benchmarks"):
         (scratch / folder).symlink_to(BUILD / folder)
+    (program.parent / "limn").symlink_to(BUILD / "lib/limn")  # what liblimn looks for beside itself
     run(options.compiler, "-Wl,--gc-sections", *compiled[:-len(COMPILED)], *(known[source][1] for source in kept),
         *(f"-l{library}" for library in LIBRARIES), "-o", program)
     print(f"{len(compiled)} files compiled, {len(kept)} objects of the build linked as they are")
