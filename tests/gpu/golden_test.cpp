@@ -36,9 +36,9 @@ class GoldenTest : public PictureTest {
     return e;
   }
 
-  /// Scenes side by side in one picture, coarse ones for those that cut surfaces; those that answer the
-  /// environment's light are lit by a sky alone, and those that answer media, caustics, specular or
-  /// subsurface, or look into height maps, have their own scenes.
+  /// Scenes side by side in one picture; those that answer the environment's light are lit by a sky alone,
+  /// and those that cut surfaces, answer media, caustics, specular or subsurface, or look into height maps,
+  /// have their own scenes.
   Image strip(const std::vector<render::TechniqueUse>& techniques) {
     const auto answers = [&](Term term) {
       return std::ranges::any_of(techniques, [term](const render::TechniqueUse& use) {
@@ -46,6 +46,9 @@ class GoldenTest : public PictureTest {
       });
     };
     std::vector<std::string> scenes{"cornell_box", "balls", "lights"};
+    if (std::ranges::any_of(
+            techniques, [](const render::TechniqueUse& use) { return cutsSurfaces(use.plugin->info->name); }))
+      scenes = {"cornell_box", "glossy_sphere", "lights"};
     if (answers(Term::media) || answers(Term::caustic)) scenes = {"glass_sphere", "ring", "gem"};
     if (answers(Term::specular)) scenes = {"glassware", "ring", "gem"};
     if (answers(Term::surface)) scenes = {"torus_metal", "disk_and_sphere", "fresnel_spheres"};
@@ -54,11 +57,9 @@ class GoldenTest : public PictureTest {
       scenes = {"bump_wall", "egg_crate", "bump_sphere"};
     if (answers(Term::subsurface)) scenes = {"marble_statue", "translucent_spheres", "translucent_head"};
     const bool outdoors = answers(Term::environment);
-    const bool elements = std::ranges::any_of(
-        techniques, [](const render::TechniqueUse& use) { return cutsSurfaces(use.plugin->info->name); });
     Image whole(kWidth * int(scenes.size()), kHeight, {"R", "G", "B"});
     for (size_t s = 0; s < scenes.size(); ++s) {
-      scene::Scene scene = elements ? coarse(scenes[s]) : asset(scenes[s]);
+      scene::Scene scene = asset(scenes[s]);
       if (outdoors) {
         for (scene::Node& node : scene.nodes) node.light = scene::kNone;
         scene.environment = sky();
