@@ -36,6 +36,14 @@ def run(*command, status=0, cwd=None, **environment):
     return done.stdout, done.stderr
 
 
+def installed_copy(scratch):
+    """The programs and libraries of the installed limn in a folder of their own, for a test that takes some of them away."""
+    prefix = scratch / "prefix"
+    for folder in ("bin", options.libdir):
+        shutil.copytree(PREFIX / folder, prefix / folder, symlinks=True)
+    return prefix
+
+
 def limn(*arguments, prefix=PREFIX, **settings):
     return run(prefix / "bin/limn", *arguments, **settings)
 

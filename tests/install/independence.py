@@ -1,12 +1,8 @@
 """No technique needs another: each is left out of a build without its like, and taken out of an installed limn in turn."""
-import shutil
-
-from common import PREFIX, SOURCE, check, fresh, limn, options, run, techniques
+from common import PREFIX, SOURCE, check, fresh, installed_copy, limn, options, run, techniques
 
 scratch = fresh("independence")
-prefix = scratch / "prefix"
-for folder in ("bin", options.libdir):
-    shutil.copytree(PREFIX / folder, prefix / folder, symlinks=True)
+prefix = installed_copy(scratch)
 modules = prefix / options.libdir / "limn/techniques"
 scene = PREFIX / "share/limn/assets/cornell_box/cornell_box.glb"
 

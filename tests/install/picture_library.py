@@ -2,12 +2,10 @@
 needs pictures says so in one line."""
 import shutil
 
-from common import PREFIX, check, fresh, limn, options, techniques
+from common import PREFIX, check, fresh, installed_copy, limn, options, techniques
 
 scratch = fresh("picture_library")
-prefix = scratch / "prefix"
-for folder in ("bin", options.libdir):
-    shutil.copytree(PREFIX / folder, prefix / folder, symlinks=True)
+prefix = installed_copy(scratch)
 library = prefix / options.libdir / "limn/limn-image-files.so"
 scene = PREFIX / "share/limn/assets/cornell_box/cornell_box.glb"
 picture = scratch / "picture.png"
