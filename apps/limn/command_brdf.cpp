@@ -87,6 +87,7 @@ int info(const InfoOptions& options) {
     checkWritable(options.picture);
   }
   const BrdfSource source = openBrdf(options.choice);
+  if (!options.picture.empty()) loadPictureLibrary();
   const double reciprocity = brdf::reciprocityDefect(source.f);
   const std::vector<AlbedoRow> rows = albedosOf(source);
   if (options.json)

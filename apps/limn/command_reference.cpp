@@ -86,6 +86,7 @@ int runReference(const ReferenceArguments& options) {
   checkWritable(options.out);
   const session::View view = session::open(options.scene, warn);
   reference::Request request = makeRequest(options, view);
+  loadPictureLibrary();
   if (options.atVertices) return runAtVertices(options, view, request);
   Progress progress("reference");
   const Interruption interruption;

@@ -220,6 +220,7 @@ int runRender(const RenderArguments& options) {
   // once.
   const bool timed = options.repeat > 0 || !options.stats.empty();
   settings.dynamic = !options.staticFrames && (timed || view.aa == 1);
+  if (!isMovie(options.out)) loadPictureLibrary();
   const auto context = Context::create(options.backend.contextOptions());
   gpu::Device device(*context);
   render::Renderer renderer(device, view.scene, options.shaders);

@@ -2,12 +2,15 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
+
 #include "apps/limn/worker.h"
 #include "core/base/error.h"
 #include "core/base/file.h"
 #include "core/bench/machine.h"
 #include "core/bench/report.h"
 #include "core/bench/tables.h"
+#include "core/image/image.h"
 #include "core/session/bench_session.h"
 #include "core/session/case_origins.h"
 #include "core/session/suite_check.h"
@@ -33,7 +36,7 @@ class CaseWork {
   }
 
   /// Throws UsageError when something is missing that an unfinished case needs; it says the last such thing,
-  /// stderr the others.
+  /// stderr the others. Throws Error when pictures are to be kept and cannot be written.
   void check() {
     // What crashes here crashes in its own row again.
     runInWorker(report_, stallTimeout_, [&] {
@@ -46,6 +49,7 @@ class CaseWork {
           unfinished, registry, [&] { report_.alive(); }, warn);
       for (std::size_t i = 0; i + 1 < missing.size(); ++i) sayError(missing[i]);
       if (!missing.empty()) throw UsageError(missing.back());
+      if (std::ranges::any_of(unfinished, &bench::Case::picture)) loadPictureLibrary();
     });
   }
 

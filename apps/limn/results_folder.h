@@ -20,7 +20,7 @@ class ResultsFolder {
   ResultsFolder(std::filesystem::path folder, BackendOptions backend, double stallTimeout);
 
   /// Throws UsageError when something does not exist that an unfinished case needs; it says the last such
-  /// thing, stderr the others.
+  /// thing, stderr the others. Throws Error when their pictures are to be kept and cannot be written.
   void check(const std::vector<bench::Case>& cases);
   /// Measures the cases for which there is no row yet, or whose row was measured with something that has
   /// changed since, with a progress bar of that name. Measures in a separate process: a case that crashes, or

@@ -6,6 +6,7 @@
 #include "apps/view/viewer.h"
 #include "core/base/version.h"
 #include "core/base/whereabouts.h"
+#include "core/image/image.h"
 
 namespace limn::app {
 namespace {
@@ -21,6 +22,7 @@ void checkFiles(const ViewerOptions& options, bool saved) {
     save = save.parent_path();
   for (const std::filesystem::path& file : {save, options.screenshot, options.stats})
     if (!file.empty()) checkWritable(file);
+  if (!options.screenshot.empty()) loadPictureLibrary();
 }
 
 }  // namespace

@@ -102,6 +102,11 @@ struct Image8 {
   std::vector<std::uint8_t> data;  ///< width * height * 4
 };
 
+/// Loads the library that decodes and encodes picture files, as the first picture would. Throws Error in one
+/// line when it is missing or another limn's. It is called before long work whose picture would be lost
+/// otherwise, and after all refusals that are quicker: it takes half a second.
+LIMN_API void loadPictureLibrary();
+
 /// Returns the image in an EXR (first part, all channels), HDR, PNG, JPEG or still WebP file. The result is
 /// linear: 8- and 16-bit colours are decoded from sRGB (alpha is not), float formats are not converted;
 /// one- and three-channel files get channels Y and R, G, B. An EXR is as large as its display window: what

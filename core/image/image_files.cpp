@@ -8,6 +8,7 @@
 #include "core/base/error.h"
 #include "core/base/helper.h"
 #include "core/base/version.h"
+#include "core/image/image.h"
 
 namespace limn::image_files {
 namespace {
@@ -31,3 +32,7 @@ const Library& library() {
 }
 
 }  // namespace limn::image_files
+
+void limn::loadPictureLibrary() {
+  image_files::library();
+}

@@ -1,6 +1,7 @@
 // Declares the library limn-image-files, which decodes and encodes picture files by OpenImageIO. It is apart
 // because the 250 libraries that OpenImageIO needs on Debian take half a second to load: liblimn loads it
-// with the first picture that it reads or writes. It needs nothing of liblimn, and both have this header.
+// with the first picture that it reads or writes, or when loadPictureLibrary() is called. It needs nothing of
+// liblimn, and both have this header.
 #pragma once
 
 #include <cstddef>
