@@ -3,6 +3,7 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <fstream>
 #include <map>
 #include <optional>
 #include <set>
@@ -17,7 +18,11 @@
 #include "core/question/term.h"
 
 namespace limn::bench {
+namespace fs = std::filesystem;
 namespace {
+
+constexpr std::string_view kHeading = "### ";                  ///< of a table in tables.md
+constexpr std::string_view kCsvBegin = "scene,camera,light,";  ///< of the CSVs of every version
 
 std::string timeSizeText(const Case& c) {
   return c.timeWidth > 0 ? fmt::format(", times at {}x{}", c.timeWidth, c.timeHeight) : "";
@@ -184,6 +189,24 @@ std::vector<std::string> markdownCells(const Chosen& chosen, const Row& row, con
   return cells;
 }
 
+/// The names of the CSVs that an earlier run wrote to the folder, by the titles in its tables.md.
+std::set<std::string> earlierCsvs(const fs::path& folder) {
+  std::set<std::string> names, used;
+  std::ifstream markdown(folder / "tables.md");
+  for (std::string line; std::getline(markdown, line);)
+    if (line.starts_with(kHeading)) names.insert(slug(line.substr(kHeading.size()), used));
+  return names;
+}
+
+/// Whether the file is a CSV of limn, and not one that somebody put in its place.
+bool isOwnCsv(const fs::path& file) {
+  std::error_code ignored;
+  if (!fs::is_regular_file(fs::symlink_status(file, ignored))) return false;
+  std::string begin(kCsvBegin.size(), '\0');
+  std::ifstream(file, std::ios::binary).read(begin.data(), static_cast<std::streamsize>(begin.size()));
+  return begin == kCsvBegin;
+}
+
 /// A line of RFC 4180.
 std::string csvLine(const std::vector<std::string>& fields) {
   std::string line;
@@ -276,7 +299,7 @@ std::string toMarkdown(const Table& table) {
   const MarkdownParts parts = markdownParts(table);
   std::vector<MarkdownHead> heads;
   for (const Column* column : parts.columns) heads.push_back({column->markdown, column->align});
-  std::string text = fmt::format("### {}\n\n", markdownText(table.title));
+  std::string text = fmt::format("{}{}\n\n", kHeading, markdownText(table.title));
   if (!parts.common.empty()) text += markdownText(parts.common) + "\n\n";
   text += markdownHead(heads);
   for (const Row& row : table.rows) text += markdownRow(markdownCells(parts.columns, row, table));
@@ -333,7 +356,8 @@ std::string picturesMarkdown(const Table& table) {
   return text;
 }
 
-void writeTables(std::span<const Row> rows, const std::filesystem::path& folder) {
+void writeTables(std::span<const Row> rows, const fs::path& folder) {
+  std::set<std::string> old = earlierCsvs(folder);
   std::string markdown, pictures;
   std::string scene;
   for (const Table& table : makeTables(rows)) {
@@ -343,7 +367,12 @@ void writeTables(std::span<const Row> rows, const std::filesystem::path& folder)
     markdown += toMarkdown(table) + "\n";
     if (const std::string shown = picturesMarkdown(table); !shown.empty()) pictures += shown + "\n";
     writeTextFile(folder / table.fileName, toCsv(table));
+    old.erase(table.fileName);
   }
+  // Before tables.md is written: a run that is cut short here leaves them to the next.
+  std::error_code ignored;
+  for (const std::string& name : old)
+    if (isOwnCsv(folder / name)) fs::remove(folder / name, ignored);
   writeTextFile(folder / "tables.md", markdown);
   if (!pictures.empty()) writeTextFile(folder / "pictures.md", pictures);
 }

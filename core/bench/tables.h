@@ -46,7 +46,8 @@ LIMN_API std::string toCsv(const Table& table);
 /// if there are none.
 LIMN_API std::string picturesMarkdown(const Table& table);
 
-/// Writes tables.md, one CSV per table and, where pictures were kept, pictures.md into `folder`.
+/// Writes tables.md, one CSV per table and, where pictures were kept, pictures.md into `folder`. Removes the
+/// CSVs that were written for the titles of an earlier tables.md and that no table has any more.
 LIMN_API void writeTables(std::span<const Row> rows, const std::filesystem::path& folder);
 
 }  // namespace limn::bench

@@ -212,5 +212,25 @@ TEST_F(BenchResults, TablesAreWritten) {
   EXPECT_TRUE(fs::exists(folder_ / makeTables(rows).front().fileName));
 }
 
+/// The name of a table grows where another one makes it ambiguous, and a table goes with its rows.
+TEST_F(BenchResults, CsvsOfTablesThatAreNoMoreGo) {
+  std::vector<Row> rows = {exampleRow(exampleCase())};
+  writeTables(rows, folder_);
+  const fs::path shortName = folder_ / makeTables(rows).front().fileName, copy = folder_ / "copy.csv";
+  ASSERT_TRUE(fs::copy_file(shortName, copy));
+  rows.push_back(rows[0]);
+  rows[1].what.reference.spp = 64;
+  writeTables(rows, folder_);
+  const std::vector<Table> tables = makeTables(rows);
+  ASSERT_EQ(tables.size(), 2u);
+  EXPECT_FALSE(fs::exists(shortName));
+  for (const Table& table : tables) EXPECT_TRUE(fs::exists(folder_ / table.fileName)) << table.fileName;
+  writeTextFile(folder_ / tables[0].fileName, "another's\n");
+  writeTables({}, folder_);
+  EXPECT_FALSE(fs::exists(folder_ / tables[1].fileName));
+  EXPECT_EQ(readTextFile(folder_ / tables[0].fileName), "another's\n");
+  EXPECT_TRUE(fs::exists(copy));
+}
+
 }  // namespace
 }  // namespace limn::bench
