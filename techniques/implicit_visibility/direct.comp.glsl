@@ -1,5 +1,6 @@
 // What leaves reflect of the lights and of the environment, and so send on. With GLOSSY a thread for each direction, and
-// lights alone. MEDIUM 1: light of lights is attenuated on its way to the leaf.
+// lights alone. MEDIUM 1: light of lights is attenuated on its way to the leaf. LIGHTS_FIRST, LIGHTS_LAST: no lights were added
+// before these, or will be after them.
 #include "glsl/light/unshadowed_light.glsl"
 #include "glsl/media/light_transmittance.glsl"
 #include "techniques/implicit_visibility/elements.glsl"
@@ -7,8 +8,14 @@
 layout(local_size_x = 64) in;
 layout(std430) readonly buffer Lights { Light lights[]; };
 layout(std430) readonly buffer Leaves { Leaf leaves[]; };
+#if LIGHTS_FIRST
 layout(std430) writeonly buffer Direct { vec4 direct[]; };
+#else
+layout(std430) buffer Direct { vec4 direct[]; };
+#endif
+#if LIGHTS_LAST
 layout(std430) writeonly buffer Outgoing { vec4 outgoing[]; };  // the same, to be pulled up
+#endif
 #if LIGHTS
 layout(std430) readonly buffer Indices { uint indices[]; };
 layout(std430) readonly buffer Seen { float seen[]; };
@@ -40,6 +47,9 @@ void main() {
 #endif
   vec3 sum = vec3(0.0);
   if (sends) {
+#if !LIGHTS_FIRST
+    sum = direct[item].rgb;
+#endif
 #if LIGHTS
     for (uint l = 0u; l < light_count; ++l) {
       if (light_is_instance(lights[indices[l]], groups[slot / 4u].object)) continue;
@@ -55,5 +65,7 @@ void main() {
 #endif
   }
   direct[item] = vec4(sum, 0.0);
+#if LIGHTS_LAST
   outgoing[item] = vec4(sum, 0.0);
+#endif
 }

@@ -1,5 +1,7 @@
 #include "techniques/implicit_visibility/display.h"
 
+#include <map>
+#include <string>
 #include <utility>
 
 namespace limn::implicit_visibility {
@@ -89,9 +91,10 @@ frame::TextureHandle Display::show(const PassRequest& r, const Gathered& light, 
   }
   const frame::TextureHandle result =
       pass.write(r.target, Access::imageLoadStore, "radiance", "reflected light");
+  std::map<std::string, std::string> defines;
+  if (chunk) elements_.readSky(pass, r.inputs, light.sky, defines);
   const auto kernelHandle =
-      chunk ? elements_.program(pass, "show_bins.comp.glsl", {{"SKY", light.sky ? "1" : "0"}})
-            : elements_.program(pass, "show_light.comp.glsl");
+      elements_.program(pass, chunk ? "show_bins.comp.glsl" : "show_light.comp.glsl", std::move(defines));
   pass.execute([this, kernelHandle, links, own = chunk ? *chunk : LinkChunk{}, perPixel = chunk != nullptr,
                 size = r.inputs.size](frame::PassContext& context) {
     gpu::Program& kernel = context.use(kernelHandle);

@@ -5,6 +5,7 @@
 #include <algorithm>
 
 #include "core/base/error.h"
+#include "core/gpu_scene/gpu_medium.h"
 #include "core/gpu_scene/gpu_scene.h"
 #include "core/radiosity/illumination.h"
 
@@ -27,6 +28,13 @@ size_t sentBytes(const ElementSettings& settings) {
 uint32_t mostElements(const ElementSettings& settings) {
   return static_cast<uint32_t>(static_cast<size_t>(settings.memory) /
                                (rowBytes(settings) + sentBytes(settings)));
+}
+
+/// Returns at how many points the density of a medium is looked up along a bin's way through its grid: the
+/// errors of many bins average out. llvmpipe leaves the loops of a thread after 65,535 steps, and a pixel
+/// follows the ways of half the bins of three leaves.
+int mediumSteps(int resolution) {
+  return std::clamp(3072 / (resolution * resolution), 3, 12);
 }
 
 }  // namespace
@@ -187,6 +195,18 @@ frame::ProgramHandle ElementPasses::program(frame::PassBuilder& pass, const char
 
 void ElementPasses::readDirections(frame::PassBuilder& pass) const {
   pass.read(directions, Access::storageLoad, "Directions", "directions and solid angles of bins");
+}
+
+bool ElementPasses::readSky(frame::PassBuilder& pass, const TechniqueInputs& inputs, bool sky,
+                            std::map<std::string, std::string>& defines) const {
+  const bool medium = sky && inputs.scene.medium.present();
+  defines["SKY"] = sky ? "1" : "0";
+  defines["MEDIUM"] = medium ? "1" : "0";
+  if (!medium) return false;
+  const scene::MediumInput input(inputs.handles, mediumSteps(resolution()));
+  input.define(defines);
+  input.declare(pass);
+  return true;
 }
 
 void ElementPasses::readInMemory(frame::PassBuilder& pass) const {

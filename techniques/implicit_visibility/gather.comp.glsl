@@ -1,4 +1,5 @@
-// Gathers at leaves over their bins (limn::radiosity::gather): a work group for each leaf. SKY as in bin_lookup.glsl.
+// Gathers at leaves over their bins (limn::radiosity::gather): a work group for each leaf. SKY, MEDIUM as in
+// bin_lookup.glsl.
 #define THREADS 64
 #include "glsl/numeric/work_group.glsl"
 #include "techniques/implicit_visibility/bin_lookup.glsl"
@@ -14,12 +15,12 @@ uniform uint first_leaf;
 uniform uint leaf_count;
 
 // The thread's share of the bins: light and weights.
-vec4 gathered(uint row, vec3 normal) {
+vec4 gathered(uint row, vec3 place, vec3 normal) {
   vec4 sum = vec4(0.0);
   for (uint bin = gl_LocalInvocationIndex; bin < bin_count; bin += uint(THREADS)) {
     BinDirection to = directions[bin];
     float weight = to.solid_angle * dot(normal, to.direction);
-    if (weight > 0.0) sum += weight * vec4(bin_radiance(row, bin, to.direction), 1.0);
+    if (weight > 0.0) sum += weight * vec4(bin_radiance(row, bin, place, to.direction), 1.0);
   }
   return sum;
 }
@@ -30,7 +31,7 @@ void main() {
   uint slot = first_leaf + row;
   Leaf leaf = leaves[slot];
   vec3 normal = to_bins(leaf.normal.xyz);
-  vec4 sum = total(gathered(row, normal));
+  vec4 sum = total(gathered(row, leaf.position.xyz, normal));
   if (gl_LocalInvocationIndex > 0u) return;
   vec3 light = leaf.used > 0.0 && sum.w > 0.0 ? pi / sum.w * sum.rgb : vec3(0.0);
   irradiance[slot] = vec4(light, 0.0);

@@ -5,11 +5,13 @@
 #include <algorithm>
 #include <map>
 #include <string>
+#include <utility>
 
 #include "core/gpu_scene/gpu_medium.h"
 #include "core/gpu_scene/gpu_scene.h"
 #include "core/radiosity/illumination.h"
 #include "core/shading_maps/shading_maps.h"
+#include "core/technique/light_batch.h"
 
 namespace limn::implicit_visibility {
 
@@ -88,9 +90,23 @@ const LightPasses::Seen& LightPasses::seen(const PassRequest& r, std::span<const
 }
 
 LightPasses::Sent LightPasses::directLight(const PassRequest& r, std::span<const uint32_t> lights, bool sky) {
+  // In the batches in which pictures ask for V, so that both share it.
+  Sent sent;
+  size_t first = 0;
+  do {
+    const auto batch = lights.subspan(first, std::min(kLightBatch, lights.size() - first));
+    first += batch.size();
+    const bool last = first == lights.size();
+    sent = addDirectLight(r, batch, sky && last, sent.first, last);
+  } while (first < lights.size());
+  return sky && elements_.glossy() ? reflect(r, this->sky(r), sent.first) : sent;
+}
+
+LightPasses::Sent LightPasses::addDirectLight(const PassRequest& r, std::span<const uint32_t> lights,
+                                              bool sky, BufferHandle before, bool last) {
   const Seen* seen = lights.empty() ? nullptr : &this->seen(r, lights);
   const BufferHandle skyIrradiance = sky ? this->sky(r).irradiance : BufferHandle{};
-  const bool glossy = elements_.glossy();
+  const bool glossy = elements_.glossy(), first = !before;
   frame::PassBuilder pass = r.graph.addPass("direct light", technique_);
   pass.read(r.inputs.handles.lights, Access::storageLoad, "Lights", "lights")
       .read(elements_.leaves, Access::storageLoad, "Leaves", "normals and albedos")
@@ -105,8 +121,11 @@ LightPasses::Sent LightPasses::directLight(const PassRequest& r, std::span<const
   if (glossy || seen)
     pass.read(r.inputs.service<shading_maps::ShadingMapService>().ltcTable(), Access::sampled, "ltc_table",
               "glossy light of rectangles");
-  std::map<std::string, std::string> defines{
-      {"LIGHTS", seen ? "1" : "0"}, {"ENVIRONMENT", sky ? "1" : "0"}, {"MEDIUM", "0"}};
+  std::map<std::string, std::string> defines{{"LIGHTS", seen ? "1" : "0"},
+                                             {"LIGHTS_FIRST", first ? "1" : "0"},
+                                             {"LIGHTS_LAST", last ? "1" : "0"},
+                                             {"ENVIRONMENT", sky ? "1" : "0"},
+                                             {"MEDIUM", "0"}};
   if (seen && r.inputs.scene.medium.present()) {
     const scene::MediumInput medium(r.inputs.handles);
     defines["MEDIUM"] = "1";
@@ -114,10 +133,13 @@ LightPasses::Sent LightPasses::directLight(const PassRequest& r, std::span<const
     medium.declare(pass);
     pass.read(r.inputs.handles.frame, Access::uniformBuffer, "FrameBlock", "the medium");
   }
-  const BufferHandle direct =
-      pass.write(sent(r, "direct light"), Access::storageStore, "Direct", "reflected by leaves");
-  const BufferHandle outgoing =
-      pass.write(sent(r, "outgoing"), Access::storageStore, "Outgoing", "the same, before it is pulled up");
+  Sent result;
+  result.first =
+      pass.write(first ? sent(r, "direct light") : before,
+                 first ? Access::storageStore : Access::storageLoadStore, "Direct", "reflected by leaves");
+  if (last)
+    result.second =
+        pass.write(sent(r, "outgoing"), Access::storageStore, "Outgoing", "the same, before it is pulled up");
   const auto kernelHandle = elements_.program(pass, "direct.comp.glsl", std::move(defines));
   pass.execute([this, kernelHandle, glossy, count = lights.size()](frame::PassContext& context) {
     gpu::Program& kernel = context.use(kernelHandle);
@@ -126,8 +148,7 @@ LightPasses::Sent LightPasses::directLight(const PassRequest& r, std::span<const
     if (count > 0) kernel.set("light_count", static_cast<unsigned>(count));
     dispatchSent(context, elements_.leafSlots());
   });
-  if (sky && glossy) return reflect(r, this->sky(r), direct);
-  return {direct, outgoing};
+  return result;
 }
 
 BufferHandle LightPasses::pullUp(const PassRequest& r, BufferHandle outgoing) {
@@ -201,7 +222,10 @@ LightPasses::Sent LightPasses::reflect(const PassRequest& r, const Gathered& gat
     pass.read(direct, Access::storageLoad, "Direct", "direct light, reflected by leaves");
   const BufferHandle next =
       pass.write(sent(r, "outgoing"), Access::storageStore, "Next", "reflected by leaves, to be pulled up");
-  const auto kernelHandle = elements_.program(pass, "reflect.comp.glsl", {{"SKY", gathered.sky ? "1" : "0"}});
+  std::map<std::string, std::string> defines;
+  if (elements_.readSky(pass, r.inputs, gathered.sky, defines))
+    pass.read(r.inputs.handles.frame, Access::uniformBuffer, "FrameBlock", "the medium");
+  const auto kernelHandle = elements_.program(pass, "reflect.comp.glsl", std::move(defines));
   pass.execute([this, kernelHandle, links](frame::PassContext& context) {
     gpu::Program& kernel = context.use(kernelHandle);
     elements_.setSpace(kernel);
@@ -235,8 +259,9 @@ const Gathered& LightPasses::sky(const PassRequest& r) {
       r.inputs.scene.environment, elements_.elements().space(), elements_.resolution());
   environment_ = gpu::Buffer::of<glm::vec4>(r.inputs.gpuScene.device(), "environment of bins", radiance);
   const BufferHandle bins = r.graph.importBuffer("environment of bins", environment_);
+  const bool onProcessor = elements_.gathersOnProcessor() && !r.inputs.scene.medium.present();
   const BufferHandle irradiance =
-      elements_.gathersOnProcessor() ? skyIrradianceOnProcessor(r, radiance) : skyIrradiance(r, bins);
+      onProcessor ? skyIrradianceOnProcessor(r, radiance) : skyIrradiance(r, bins);
   sky_ = Gathered{irradiance, bins, true};
   return *sky_;
 }
@@ -247,7 +272,10 @@ BufferHandle LightPasses::skyIrradiance(const PassRequest& r, BufferHandle bins)
   pass.read(bins, Access::storageLoad, "Source", "radiance of bins").cacheable();
   const BufferHandle irradiance =
       pass.write(perSlot(r, "environment's irradiance"), Access::storageStore, "Irradiance", "of leaves");
-  const auto kernelHandle = elements_.program(pass, "gather.comp.glsl", {{"SKY", "1"}});
+  std::map<std::string, std::string> defines;
+  if (elements_.readSky(pass, r.inputs, true, defines))
+    pass.read(r.inputs.handles.frame, Access::uniformBuffer, "FrameBlock", "the medium");
+  const auto kernelHandle = elements_.program(pass, "gather.comp.glsl", std::move(defines));
   pass.execute([this, kernelHandle, links](frame::PassContext& context) {
     gatherChunks(context, kernelHandle, links);
   });

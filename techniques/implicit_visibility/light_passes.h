@@ -47,6 +47,10 @@ class LightPasses {
   const Seen& seen(const PassRequest& r, std::span<const uint32_t> lights);
   /// Returns what leaves reflect of lights and environment.
   Sent directLight(const PassRequest& r, std::span<const uint32_t> lights, bool sky);
+  /// Adds what leaves reflect of some lights and, if `sky`, of the environment to `before`; empty: nothing
+  /// comes before. The second buffer is made where `last`.
+  Sent addDirectLight(const PassRequest& r, std::span<const uint32_t> lights, bool sky,
+                      frame::BufferHandle before, bool last);
   /// Sets the levels above the leaves to their children's mean (thesis: pull-up).
   frame::BufferHandle pullUp(const PassRequest& r, frame::BufferHandle outgoing);
   /// Returns what arrives at leaves from `outgoing`, and in `next` what they then send on.
@@ -55,8 +59,10 @@ class LightPasses {
   /// Does the same on the processor.
   Gathered gatherOnProcessor(const PassRequest& r, frame::BufferHandle outgoing, frame::BufferHandle direct,
                              frame::BufferHandle& next);
-  /// Returns the irradiance of leaves by the environment, of which `bins` holds the radiance.
+  /// Returns the irradiance of leaves by the environment, of which `bins` holds the radiance, less what the
+  /// scene's medium takes of it.
   frame::BufferHandle skyIrradiance(const PassRequest& r, frame::BufferHandle bins);
+  /// Does the same on the processor, in a scene without a medium.
   frame::BufferHandle skyIrradianceOnProcessor(const PassRequest& r, std::span<const glm::vec4> radiance);
   /// Returns what leaves send into bins of directions: `direct`, and what they reflect of `gathered`; where
   /// `gathered` is the environment, the result is also kept in `direct`.

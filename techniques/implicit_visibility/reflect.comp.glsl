@@ -1,5 +1,5 @@
 // What leaves send into a bin of directions: the BRDF over the bins of what they see, and what they reflect of lights.
-// A thread for each leaf and direction. SKY as in gather.comp.glsl.
+// A thread for each leaf and direction. SKY, MEDIUM as in bin_lookup.glsl.
 #include "techniques/implicit_visibility/bin_reflection.glsl"
 
 layout(local_size_x = 64) in;
@@ -30,7 +30,7 @@ void main() {
     if (brdf_is_lambertian(surface)) {
       sum += surface.diffuse * irradiance[slot].rgb * inverse_pi;
     } else {
-      sum += reflected(row, surface, n, n, view);
+      sum += reflected(row, leaf.position.xyz, surface, n, n, view);
     }
   }
   next[at] = vec4(sum, 0.0);

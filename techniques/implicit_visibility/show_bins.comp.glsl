@@ -1,5 +1,5 @@
-// Per-pixel gathering: the BRDF of the pixel's own normal and view over the bins of the leaves around it. SKY as in
-// gather.comp.glsl. Leaves whose links are not bound are left to the passes that have them.
+// Per-pixel gathering: the BRDF of the pixel's own normal and view over the bins of the leaves around it. SKY, MEDIUM
+// as in bin_lookup.glsl. Leaves whose links are not bound are left to the passes that have them.
 #include "glsl/indirect/surface_lookup.glsl"
 #include "glsl/surface/gbuffer_input.glsl"
 #include "glsl/surface/brdf.glsl"
@@ -13,7 +13,8 @@ uniform uint leaf_count;
 void main() {
   ivec2 pixel = ivec2(gl_GlobalInvocationID.xy);
   if (any(greaterThanEqual(pixel, ivec2(frame.frame_size)))) return;
-  if (pixel_depth(pixel) == 0.0) return;
+  float depth = pixel_depth(pixel);
+  if (depth == 0.0) return;
   GBufferSurface surface = pixel_surface(pixel);
   if ((surface.flags & gbuffer_flag_specular) != 0u) return;
   Around a = around_pixel(pixel);
@@ -24,10 +25,11 @@ void main() {
   vec3 n = to_bins(surface.normal);
   vec3 ng = to_bins(surface.geometric_normal);
   vec3 v = to_bins(-normalize(pixel_ray(pixel)));
+  vec3 place = pixel_position(pixel, depth);
   vec3 sum = vec3(0.0);
   for (int k = 0; k < 3; ++k) {
     uint row = a.slots[k] - first_leaf;
-    if (a.weights[k] > 0.0 && row < leaf_count) sum += a.weights[k] * reflected(row, material, n, ng, v);
+    if (a.weights[k] > 0.0 && row < leaf_count) sum += a.weights[k] * reflected(row, place, material, n, ng, v);
   }
   imageStore(radiance, pixel, imageLoad(radiance, pixel) + vec4(sum, 0.0));
 }

@@ -29,6 +29,18 @@ class ImplicitVisibilityLightTest : public RenderTest {
     return test::environmentOf(32, [radiance](const glm::vec3&) { return glm::vec3(radiance); });
   }
 
+  /// A floor and a wall, 2 cm wide, in the middle of a ball of 1 m that specks beside them span: light from
+  /// all sides has the same way to them through what fills the ball.
+  static scene::Scene smallCorner(const scene::Material& material) {
+    scene::Scene scene;
+    const int index = test::addMaterial(scene, material);
+    test::show(scene, test::quad({0, 0, 0}, {0.02f, 0, 0}, {0, 0, -0.02f}, index));
+    test::show(scene, test::quad({0, 0.01f, -0.01f}, {0.02f, 0, 0}, {0, 0.02f, 0}, index));
+    for (const float x : {-1.f, 1.f})
+      test::show(scene, test::quad({x, 0, 0}, {0.002f, 0, 0}, {0, 0, -0.002f}, index));
+    return scene;
+  }
+
   static render::TechniqueUse coarse(TermSet terms = kAnswerableTerms) {
     render::TechniqueUse use = technique("implicit_visibility", {{"bins", "8"}, {"longest_edge", "0.1"}});
     use.terms = terms;
@@ -117,6 +129,59 @@ TEST_F(ImplicitVisibilityLightTest, AMediumTakesOfLightFromTheLampToTheWall) {
     test::fillWithFog(fog, grid);
     EXPECT_NEAR(seen(fog) / clear, std::exp(-2.0), 0.003) << grid;
   }
+}
+
+/// On the way to the surface that it meets first and on that to the eye, however bins are shown and sent on.
+/// Places lie 1 cm off the middle of the ball.
+TEST_F(ImplicitVisibilityLightTest, AMediumTakesOfTheEnvironmentsLight) {
+  const glm::vec3 eye(0.15f, 0.25f, 0.4f), middle(0, 0.005f, 0);
+  scene::Material satin;
+  satin.baseColour = glm::vec4(0.5f, 0.5f, 0.5f, 1);
+  satin.roughness = 0.5f;
+  const auto expectLess = [&](const scene::Material& material, Term term, const char* parameter,
+                              const char* value) {
+    SCOPED_TRACE(parameter);
+    const auto seen = [&](const scene::Scene& scene) {
+      render::Renderer renderer(device(), scene);
+      const render::TechniqueUse use =
+          technique("implicit_visibility", {{"bins", "8"}, {"longest_edge", "0.005"}, {parameter, value}});
+      return mean(picture(renderer, settings(48, 48, term, {use}), scene::lookAt(eye, middle, 0.04f)));
+    };
+    scene::Scene clear = smallCorner(material);
+    clear.environment = uniformSky(1);
+    const double before = seen(clear);
+    EXPECT_GT(before, 0);
+    const double ways =
+        double(scene::evaluate(clear, 0).bounds.radius()) + double(glm::distance(eye, middle));
+    for (const bool grid : {false, true}) {
+      scene::Scene fog = clear;
+      test::fillWithFog(fog, grid);
+      EXPECT_NEAR(seen(fog) / before / std::exp(-ways), 1, 0.03) << grid;
+    }
+  };
+  expectLess(test::lambertian(0.5f), Term::direct, "display", "vertex");
+  expectLess(satin, Term::direct, "display", "pixel");
+  expectLess(test::lambertian(0.5f), Term::indirect, "links", "gpu");
+  expectLess(satin, Term::indirect, "glossy_bins", "4");
+}
+
+/// Core asks for V of 8 lights at a time, and the bounce for all: both look up the same bins.
+TEST_F(ImplicitVisibilityLightTest, BinsAreLookedUpOnceForEachOfManyLights) {
+  constexpr int kLights = 11;
+  const scene::Scene one = corner();
+  scene::Scene many = one;
+  many.lights[0].intensity /= kLights;
+  const scene::LightSource share = many.lights[0];
+  for (int i = 1; i < kLights; ++i) test::shine(many, share, {0.3f, 1.2f, 0.2f});
+  render::Renderer single(device(), one), renderer(device(), many);
+  const Image wanted = picture(single, settings(64, 48, Term::final, {coarse()}), camera());
+  const Image image = picture(renderer, settings(64, 48, Term::final, {coarse()}), camera());
+  EXPECT_LT(rmse(image, wanted), 1e-5 * mean(wanted));
+  int lookedUp = 0;
+  for (const frame::PassReport& pass : renderer.explain())
+    lookedUp += pass.technique == "implicit_visibility" && pass.name.starts_with("light visibility") &&
+                pass.state != frame::PassState::leftOut;
+  EXPECT_EQ(lookedUp, 2);
 }
 
 class ImplicitVisibilitySunTest : public test::BallTest {};
