@@ -70,30 +70,27 @@ void addReflectivePass(const MapRaster& raster, TextureHandle ltc, bool instance
   };
   maps.depth = write("reflective depth", GL_R32F, "linear depth");
   maps.normal = write("reflective normal", GL_RG16_SNORM, "normal of the triangle");
-  maps.albedo = write("reflective albedo", GL_RGB10_A2, "diffuse albedo");
-  if (instances) maps.instance = write("reflective instance", GL_R32UI, "draw instance");
+  const TextureHandle third = instances ? write("reflective instance", GL_R32UI, "draw instance")
+                                        : write("reflective albedo", GL_RGB10_A2, "diffuse albedo");
+  (instances ? maps.instance : maps.albedo) = third;
   const TextureHandle zbuffer = pass.write(createMaps(raster, maps, "reflective z", GL_DEPTH_COMPONENT32F),
                                            Access::depthAttachment, "hidden-surface removal");
   if (raster.cacheable) pass.cacheable();
-  pass.execute([raster, zbuffer, together, programs, depth = maps.depth, normal = maps.normal,
-                albedo = maps.albedo, instance = maps.instance](frame::PassContext& context) {
+  pass.execute([raster, zbuffer, together, programs, depth = maps.depth, normal = maps.normal, third,
+                instances](frame::PassContext& context) {
     const gl::Functions& gl = context.gl();
     const auto bind = [&](int layer) {
-      if (instance) {
-        context.bindFramebuffer(
-            {{depth, 0, layer}, {normal, 0, layer}, {albedo, 0, layer}, {instance, 0, layer}},
-            {zbuffer, 0, layer});
-      } else {
-        context.bindFramebuffer({{depth, 0, layer}, {normal, 0, layer}, {albedo, 0, layer}},
-                                {zbuffer, 0, layer});
-      }
+      context.bindFramebuffer({{depth, 0, layer}, {normal, 0, layer}, {third, 0, layer}},
+                              {zbuffer, 0, layer});
     };
     bind(-1);
     constexpr GLfloat black[4] = {0, 0, 0, 0};
     gl.ClearBufferfv(GL_COLOR, 0, kNothing);
     gl.ClearBufferfv(GL_COLOR, 1, black);
-    gl.ClearBufferfv(GL_COLOR, 2, black);
-    if (instance) gl.ClearBufferuiv(GL_COLOR, 3, kNobody);
+    if (instances)
+      gl.ClearBufferuiv(GL_COLOR, 2, kNobody);
+    else
+      gl.ClearBufferfv(GL_COLOR, 2, black);
     gl.ClearBufferfv(GL_DEPTH, 0, &kFarthest);
     raster.scene.drawSurfaces(context, programs, raster.views, raster.list, together,
                               [&](const scene::DepthView& view) { bind(view.layer); });

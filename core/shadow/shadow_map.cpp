@@ -15,8 +15,7 @@ namespace limn::shadow {
 namespace {
 
 constexpr int64_t kKeptBytesPerTexel = 8;        // linear depth, and rasterised depth beside it
-constexpr int64_t kReflectiveBytesPerTexel = 8;  // normal and albedo on top
-constexpr int64_t kInstanceBytesPerTexel = 4;    // and instances
+constexpr int64_t kReflectiveBytesPerTexel = 8;  // normal, and albedo or instance, on top
 constexpr int64_t kKeptLimit = int64_t{256}
                                << 20;  // bytes of all maps that are kept; what is derived comes on top
 
@@ -171,8 +170,7 @@ struct ShadowMapService::Implementation {
   }
   bool cacheable(const ShadowMaps& maps) const { return requests.at(maps.index)->kept; }
   static int64_t bytesPerTexel(const ShadowMapDesc& desc) {
-    return kKeptBytesPerTexel + (desc.reflective ? kReflectiveBytesPerTexel : 0) +
-           (desc.instances ? kInstanceBytesPerTexel : 0);
+    return kKeptBytesPerTexel + (desc.reflective ? kReflectiveBytesPerTexel : 0);
   }
   int64_t bytesOf(const Request& request) const {
     return int64_t{request.maps.size} * request.maps.size * request.maps.layers * bytesPerTexel(request.desc);
@@ -239,12 +237,12 @@ void ShadowMapService::Implementation::addPasses(Request& request, const FrameCo
   const MapRaster raster{graph,       device, scene, context.handles, request.depthViews, request.drawList,
                          request.kept};
   if (request.desc.reflective) {
-    if (!lambertian() && !ltcHandle) {
+    const bool specular = !request.desc.instances && !lambertian();
+    if (specular && !ltcHandle) {
       if (!ltcTable) ltcTable = shading::makeLtcTexture(device);
       ltcHandle = graph.importTexture("table of diffuse reflectance", ltcTable);
     }
-    addReflectivePass(raster, lambertian() ? frame::TextureHandle{} : ltcHandle, request.desc.instances,
-                      maps);
+    addReflectivePass(raster, specular ? ltcHandle : frame::TextureHandle{}, request.desc.instances, maps);
   } else {
     addDepthPass(raster, maps);
   }

@@ -54,7 +54,7 @@ struct ShadowMapDesc {
   bool cacheable = true;
   /// Says whether the maps also hold what reflects the light: glsl/indirect/reflective_map.glsl.
   bool reflective = false;
-  /// Says whether reflective maps also hold which draw instance a texel shows.
+  /// Says whether reflective maps hold which draw instance a texel shows, in place of the albedo.
   bool instances = false;
   /// Says whether specular surfaces are in the maps.
   bool specular = true;
@@ -69,7 +69,8 @@ struct ShadowMapDesc {
 struct ShadowMaps {
   frame::TextureHandle depth;   ///< R32F array
   frame::TextureHandle normal;  ///< reflective: RG16_SNORM array, geometric normal on the light's side
-  frame::TextureHandle albedo;  ///< reflective: RGB10_A2 array, square root of the diffuse albedo
+  /// Reflective, without instances: RGB10_A2 array, square root of the diffuse albedo.
+  frame::TextureHandle albedo;
   /// With instances: R32UI array, draw instance; no_instance for nothing and for the backs of surfaces that
   /// have one side.
   frame::TextureHandle instance;

@@ -1,7 +1,8 @@
 // Reflective shadow maps (Dachsbacher and Stamminger 2005, Reflective Shadow Maps): what reflects light, as the light sees
 // it. Beside the depth of a shadow map (glsl/shadow/shadow_view.glsl) a texel holds the geometric normal on the light's side
-// (RG16_SNORM, octahedral) and the diffuse albedo for light from there (RGB10_A2, its square root). The flux it reflects follows:
-// albedo times what the light sends (reflective_map_intensity) times the texel's measure (reflective_map_measure).
+// (RG16_SNORM, octahedral) and the diffuse albedo for light from there (RGB10_A2, its square root), or the draw instance where
+// nobody asks what is reflected. The flux that a texel reflects follows: albedo times what the light sends
+// (reflective_map_intensity) times the texel's measure (reflective_map_measure).
 //
 // A light with extent counts as `samples` points on it, each with its own maps and its share of the light. What a texel
 // gets from a rectangle, distant or not, is exact however wide it is, as long as the whole of it is seen where one of its points

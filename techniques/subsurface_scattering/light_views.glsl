@@ -60,6 +60,10 @@ LitPlace lit_place(ShadowView view, vec3 drawn, float across, uint instance, Dif
   lit.position = p.position;
   lit.normal = p.normal;
   vec3 intensity = texel_intensity(view, lit);
+#if MAP_POINTS > 1
+  // Points on a disc have what passes a place between them; what a surface gets of it follows from the directions of them all.
+  intensity *= light_fluence(lights[view.light]);
+#endif
   p.light = intensity * (inverse_pi * diffusion_entry(boundary, cosine) * measure);
 #if MEDIUM
   Medium medium = scene_medium();

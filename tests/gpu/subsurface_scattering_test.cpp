@@ -306,6 +306,32 @@ TEST_F(SubsurfaceScatteringTest, MediaTakeOfLightFromBehind) {
   EXPECT_LT(ratio.rms, 0.05);
 }
 
+/// At an index of 1 all that arrives enters, whatever its direction: as much from 16 points on a sun of 2 rad
+/// as from its middle. As a surface that faces each of them gets it, 0.77 of that would enter.
+TEST_F(SubsurfaceScatteringTest, ViewsFromASunsDiscBringAllOfItsLight) {
+  scene::Scene scene = plate(0.02f, {0, 1, 0});
+  scene.materials[0].ior = 1;
+  scene.lights[0].angle = 2;
+  const Image middle = below(scene, {{"samples", "64"}, {"light_views", "1"}});
+  const Image disc = below(scene, {{"samples", "64"}, {"light_views", "16"}});
+  EXPECT_NEAR(ratioInTheMiddle(disc, middle).mean, 1, 0.05);
+}
+
+/// Nobody asks light views what surfaces reflect.
+TEST_F(SubsurfaceScatteringTest, LightViewsHoldNoAlbedo) {
+  std::vector<frame::PassReport> passes;
+  drawn(plate(0.02f, {0, 1, 0}), Term::subsurface,
+        {technique("subsurface_scattering", {{"light_views", "1"}})}, &passes);
+  int maps = 0;
+  for (const frame::PassReport& pass : passes) {
+    if (!pass.name.starts_with("reflective shadow maps")) continue;
+    ++maps;
+    for (const frame::AccessReport& access : pass.accesses)
+      EXPECT_FALSE(access.resource.starts_with("reflective albedo"));
+  }
+  EXPECT_EQ(maps, 1);
+}
+
 /// What the camera sees is not added a second time, at the picture's border neither, and nor are opaque
 /// neighbours and the undersides of what has one side.
 TEST_F(SubsurfaceScatteringTest, LightViewsAddWhatIsHiddenAlone) {

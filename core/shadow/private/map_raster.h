@@ -23,9 +23,9 @@ struct MapRaster {
 /// Declares the pass that draws linear depth; sets maps.depth.
 void addDepthPass(const MapRaster& raster, ShadowMaps& maps);
 
-/// Declares the pass that draws reflective maps; sets maps.depth, normal, albedo and, where asked for,
-/// instance. `ltc` is the table of linearly transformed cosines, empty when every material of the scene is
-/// Lambertian.
+/// Declares the pass that draws reflective maps; sets maps.depth, normal and, as `instances` says, instance
+/// or albedo. `ltc` is the table of linearly transformed cosines, empty with instances and when every
+/// material of the scene is Lambertian.
 void addReflectivePass(const MapRaster& raster, frame::TextureHandle ltc, bool instances, ShadowMaps& maps);
 
 }  // namespace limn::shadow
