@@ -7,23 +7,26 @@
 uniform float objects_distance;  // of the specular objects from the camera, metres
 uniform float scale;
 
+vec3 scattered_at(Medium medium, CausticRay ray, LineFragment f) {
+  vec3 place = ray.start + f.along * ray.direction;
+  vec3 arriving = ray.power * medium_density(place);
+#if ATTENUATION
+  vec3 eye = frame.camera_position.xyz;
+  float inside = line_medium_length(medium, ray, f) + medium_length_between(medium, eye, place);
+  arriving *= medium_transmittance(medium, inside);
+#endif
+  float focal = 1.0 / length(frame.view_ray_dx.xyz);
+  float weight = scale * f.share * caustic_even_weight(objects_distance, focal, lines_are_rectangles());
+  return arriving * medium.scattering * (weight * 0.25 * inverse_pi);
+}
+
 void main() {
   CausticRay ray = rays[ray_index];
   Medium medium = scene_medium();
-  float focal = 1.0 / length(frame.view_ray_dx.xyz);
   vec3 sum = vec3(0.0);
   for (int i = 0; i < line_nodes; ++i) {
     LineFragment f = line_fragment(i);
-    if (f.share == 0.0) continue;
-    vec3 place = ray.start + f.along * ray.direction;
-    vec3 arriving = ray.power * medium_density(place);
-#if ATTENUATION
-    vec3 eye = frame.camera_position.xyz;
-    float inside = line_medium_length(medium, ray, f) + medium_length_between(medium, eye, place);
-    arriving *= medium_transmittance(medium, inside);
-#endif
-    float weight = scale * f.share * caustic_even_weight(objects_distance, focal, lines_are_rectangles());
-    sum += arriving * medium.scattering * (weight * 0.25 * inverse_pi);
+    if (f.share != 0.0) sum += scattered_at(medium, ray, f);
   }
   if (sum == vec3(0.0)) discard;
   radiance = vec4(sum, 0.0);
