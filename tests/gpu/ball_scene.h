@@ -24,9 +24,10 @@ struct BallScene {
   scene::CameraPose camera;
   float scale;
 
-  explicit BallScene(float s = 1, bool ball = true, const glm::mat4& turn = glm::mat4(1)) : scale(s) {
+  explicit BallScene(float s = 1, bool ball = true, const glm::mat4& turn = glm::mat4(1), int rings = 64)
+      : scale(s) {
     addMesh(scene, floorPrimitive(4 * s, addMaterial(scene)));
-    addMesh(scene, spherePrimitive(0.5f * s, 0, 64));
+    addMesh(scene, spherePrimitive(0.5f * s, 0, rings));
     addInstance(scene, pose, 0, turn);
     if (ball) addInstance(scene, pose, 1, at(0, s, 0));
     addLight(pose, pointLight(s * vec3(1, 3, 0.5f)));

@@ -18,9 +18,13 @@ class EnvironmentCombineTest : public EnvironmentTest {
     return scene;
   }
 
-  Image direct(const scene::Scene& scene, std::vector<render::TechniqueUse> techniques = {}, int light = -1) {
-    render::Renderer renderer(device(), scene);
+  static Image direct(render::Renderer& renderer, std::vector<render::TechniqueUse> techniques = {},
+                      int light = -1) {
     return picture(renderer, settings(64, 48, Term::direct, std::move(techniques), light));
+  }
+  static Image direct(const scene::Scene& scene, std::vector<render::TechniqueUse> techniques = {}) {
+    render::Renderer renderer(device(), scene);
+    return direct(renderer, std::move(techniques));
   }
 
   static render::TechniqueUse hard() { return technique("hard_shadow_map", {{"shadow_map_size", "512"}}); }
@@ -47,18 +51,19 @@ class EnvironmentCombineTest : public EnvironmentTest {
 /// Of metallic-roughness, of coats, of material models, and of what enters and leaves translucent bodies.
 TEST_F(EnvironmentCombineTest, WhereNothingIsHiddenTheLightIsThatOfTheMap) {
   for (const char* name :
-       {"balls_sky", "torus_metal", "fresnel_spheres", "measured_spheres", "translucent_spheres"})
+       {"balls_sky", "torus_metal", "fresnel_spheres", "measured_spheres", "translucent_spheres"}) {
+    const scene::Scene map = lit(coarse(name), sky(), 0);
+    scene::Scene parts = byRatio(lit(map, sky(), 0.05));
+    render::Renderer unshadowed(device(), map);
+    const render::Settings s = settings(64, 48, Term::final);
+    const Image expected = picture(unshadowed, s);
+    EXPECT_GT(mean(expected), 0) << name;
     for (const bool centres : {false, true}) {
-      scene::Scene parts = byRatio(lit(coarse(name), sky(), 0.05));
       parts.environment.reflectCentres = centres;
       render::Renderer renderer(device(), parts);
-      const scene::Scene map = lit(coarse(name), sky(), 0);
-      render::Renderer unshadowed(device(), map);
-      const render::Settings s = settings(64, 48, Term::final);
-      const Image expected = picture(unshadowed, s);
-      EXPECT_GT(mean(expected), 0) << name;
       EXPECT_LT(rmse(picture(renderer, s), expected), 1e-6 * mean(expected)) << name << centres;
     }
+  }
 }
 
 TEST_F(EnvironmentCombineTest, WhereAllIsHiddenThereIsNoLight) {
@@ -83,9 +88,11 @@ TEST_F(EnvironmentCombineTest, GlossySurfacesShowTheMapInsteadOfItsLights) {
   const Image truth = reference(sum, settings(64, 48, Term::direct), 256);
   for (const bool centres : {false, true}) {
     sum.environment.reflectCentres = centres;
+    const scene::Scene shares = byRatio(sum);
+    render::Renderer adding(device(), sum), sharing(device(), shares);
     for (const char* shadows : {"hard_shadow_map", "pcss"}) {
       const std::vector<render::TechniqueUse> use{technique(shadows, {{"shadow_map_size", "512"}})};
-      const double added = rmse(direct(sum, use), truth), ratio = rmse(direct(byRatio(sum), use), truth);
+      const double added = rmse(direct(adding, use), truth), ratio = rmse(direct(sharing, use), truth);
       RecordProperty(std::string(shadows) + (centres ? " centre" : " area"),
                      std::to_string(added) + " " + std::to_string(ratio));
       EXPECT_LT(ratio, 0.7 * added) << shadows << centres;
@@ -131,15 +138,15 @@ TEST_F(EnvironmentCombineTest, MediaAttenuateWhatArrives) {
 
 TEST_F(EnvironmentCombineTest, NothingElseChanges) {
   const scene::Scene sum = lit(coarse("balls"), sky(), 0.05), ratio = byRatio(sum);
-  EXPECT_EQ(rmse(direct(sum, {hard()}, 3), direct(ratio, {hard()}, 3)), 0) << "a light alone";
+  render::Renderer adding(device(), sum), sharing(device(), ratio);
+  EXPECT_EQ(rmse(direct(adding, {hard()}, 3), direct(sharing, {hard()}, 3)), 0) << "a light alone";
   const scene::Scene lamps = coarse("balls"), flagged = byRatio(lamps);
   EXPECT_EQ(rmse(direct(lamps, {hard()}), direct(flagged, {hard()})), 0) << "no light of an environment";
   for (const char* answer : {"sampled_environment_light", "implicit_visibility"})
-    EXPECT_EQ(rmse(direct(sum, {quick(answer)}), direct(ratio, {quick(answer)})), 0) << answer;
+    EXPECT_EQ(rmse(direct(adding, {quick(answer)}), direct(sharing, {quick(answer)})), 0) << answer;
 
-  render::Renderer renderer(device(), sum);
-  picture(renderer, settings(64, 48, Term::direct, {hard()}));
-  for (const frame::PassReport& pass : renderer.explain())
+  direct(adding, {hard()});
+  for (const frame::PassReport& pass : adding.explain())
     if (pass.state == frame::PassState::run) {
       EXPECT_EQ(pass.name.find("environment"), std::string::npos) << pass.name;
     }

@@ -10,7 +10,19 @@ namespace {
 
 using glm::vec3;
 
-using EnvironmentShadowTest = EnvironmentTest;
+class EnvironmentShadowTest : public EnvironmentTest {
+ protected:
+  /// A floor that is a perfect mirror, under a sky of radiance 2.
+  static scene::Scene mirrorUnderSky() {
+    scene::Scene scene = lit(floor(), uniform(2), 0);
+    glsl::MaterialModel mirror{};
+    mirror.kind = glsl::model_coated;
+    mirror.eta = vec3(1e-3f);
+    mirror.k = vec3(1000);
+    scene::setModel(scene.materials.front(), mirror);
+    return scene;
+  }
+};
 
 TEST_F(EnvironmentShadowTest, PosesHoldTheLightsOfTheEnvironmentBehindTheirOwn) {
   scene::Scene scene = coarse("balls");
@@ -73,34 +85,25 @@ TEST_F(EnvironmentShadowTest, AUniformSkyOverAPlaneGivesPiTimesItsRadiance) {
 
 /// A floor that is a perfect mirror shows the sky, and nothing under a roof that hides all of it.
 TEST_F(EnvironmentShadowTest, CoatsMirrorWhatIsNotHidden) {
-  for (const std::string& name : shadowingTechniques())
-    for (const bool roofed : {false, true}) {
-      scene::Scene scene = lit(floor(), uniform(2), 0);
-      glsl::MaterialModel mirror{};
-      mirror.kind = glsl::model_coated;
-      mirror.eta = vec3(1e-3f);
-      mirror.k = vec3(1000);
-      scene::setModel(scene.materials.front(), mirror);
-      if (roofed) {
-        scene::Node roof;
-        roof.mesh = 0;
-        roof.transform.translation = {0, 6, 0};
-        scene.nodes.push_back(roof);
-      }
-      render::Renderer renderer(device(), scene);
+  for (const bool roofed : {false, true}) {
+    scene::Scene scene = mirrorUnderSky();
+    if (roofed) {
+      scene::Node roof;
+      roof.mesh = 0;
+      roof.transform.translation = {0, 6, 0};
+      scene.nodes.push_back(roof);
+    }
+    render::Renderer renderer(device(), scene);
+    for (const std::string& name : shadowingTechniques()) {
       const Image picture = this->picture(renderer, settings(16, 12, Term::direct, {sampled(name, 64)}));
       for (const float v : picture.data()) EXPECT_NEAR(v, roofed ? 0 : 2, 0.02f) << name << roofed;
     }
+  }
 }
 
 /// A medium takes from what coats mirror what it takes along the mirror direction.
 TEST_F(EnvironmentShadowTest, CoatsMirrorThroughTheMedium) {
-  scene::Scene scene = lit(floor(), uniform(2), 0);
-  glsl::MaterialModel mirror{};
-  mirror.kind = glsl::model_coated;
-  mirror.eta = vec3(1e-3f);
-  mirror.k = vec3(1000);
-  scene::setModel(scene.materials.front(), mirror);
+  scene::Scene scene = mirrorUnderSky();
   scene.medium.sigmaA = vec3(0.005f, 0.01f, 0.02f);
   render::Renderer renderer(device(), scene);
   const render::Settings bare = settings(16, 12, Term::direct);
@@ -163,10 +166,10 @@ TEST_F(EnvironmentShadowTest, MemoryIsBoundedByBatches) {
 }
 
 TEST_F(EnvironmentShadowTest, ATechniqueTakesThePlaceOfTheLights) {
+  const scene::Scene whole = lit(coarse("balls"), sky(), 0), parts = lit(whole, sky(), 0.05);
+  render::Renderer a(device(), whole), b(device(), parts);
   for (const std::string& name : environmentTechniques()) {
     SCOPED_TRACE(name);
-    const scene::Scene whole = lit(coarse("balls"), sky(), 0), parts = lit(coarse("balls"), sky(), 0.05);
-    render::Renderer a(device(), whole), b(device(), parts);
     const render::Settings s = settings(64, 48, Term::direct, {quick(name), technique("hard_shadow_map")});
     const Image first = picture(a, s), second = picture(b, s);
     EXPECT_EQ(rmse(first, second), 0);
@@ -196,23 +199,22 @@ TEST_F(EnvironmentShadowTest, EveryTechniqueWithShadowsConvergesToTheReference) 
 }
 
 TEST_F(EnvironmentShadowTest, EveryTechniqueGivesTheClosedFormOverAPlane) {
+  const scene::Scene scene = lit(floor(), uniform(0.7f), 0);
+  render::Renderer renderer(device(), scene);
   for (const std::string& name : environmentTechniques()) {
     SCOPED_TRACE(name);
-    const scene::Scene scene = lit(floor(), uniform(0.7f), 0);
-    render::Renderer renderer(device(), scene);
     const Image picture = this->picture(renderer, settings(16, 12, Term::direct, {sampled(name, 500)}));
     for (const float v : picture.data()) EXPECT_NEAR(v, 0.7f, 0.7f * 0.01f);
   }
 }
 
 TEST_F(EnvironmentShadowTest, TechniquesLeaveScenesWithoutEnvironmentAlone) {
+  const scene::Scene scene = coarse("balls"), black = lit(scene, uniform(0), 0);
+  render::Renderer renderer(device(), scene), dark(device(), black);
+  const Image bare = picture(renderer, settings(64, 48, Term::direct));
   for (const std::string& name : environmentTechniques()) {
     SCOPED_TRACE(name);
-    const scene::Scene scene = coarse("balls"), black = lit(coarse("balls"), uniform(0), 0);
-    render::Renderer renderer(device(), scene), dark(device(), black);
-    EXPECT_EQ(rmse(picture(renderer, settings(64, 48, Term::direct, {quick(name)})),
-                   picture(renderer, settings(64, 48, Term::direct))),
-              0);
+    EXPECT_EQ(rmse(picture(renderer, settings(64, 48, Term::direct, {quick(name)})), bare), 0);
     expectWithin(picture(dark, settings(64, 48, Term::direct, {quick(name)})), 0, 0);
   }
 }

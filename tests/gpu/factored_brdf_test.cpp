@@ -63,8 +63,7 @@ class FactoredBrdfTest : public RenderTest {
     return scene;
   }
 
-  Image drawn(const scene::Scene& scene, const std::vector<render::TechniqueUse>& techniques) {
-    render::Renderer renderer(device(), scene);
+  static Image drawn(render::Renderer& renderer, const std::vector<render::TechniqueUse>& techniques) {
     renderer.configure(settings(96, 96, Term::direct, techniques));
     renderer.setCamera(scene::lookAt({0.3f, 0.8f, 3}, {0, 0, 0}, 0.8f));
     renderer.render();
@@ -83,19 +82,32 @@ class FactoredBrdfTest : public RenderTest {
     EXPECT_GT(sum, 0);
     return std::sqrt(difference / sum);
   }
-  double error(const scene::Scene& scene, const Choice& values) {
-    return errorOf(drawn(scene, {technique("factored_brdf", values)}), drawn(scene, {}));
-  }
+
+  /// Errors of a scene by tables, against one exact picture.
+  class Errors {
+   public:
+    explicit Errors(scene::Scene scene)
+        : scene_(std::move(scene)), renderer_(device(), scene_), exact_(drawn(renderer_, {})) {}
+    double of(const Choice& values) {
+      return errorOf(drawn(renderer_, {technique("factored_brdf", values)}), exact_);
+    }
+
+   private:
+    const scene::Scene scene_;
+    render::Renderer renderer_;
+    const Image exact_;
+  };
+  static double error(const scene::Scene& scene, const Choice& values) { return Errors(scene).of(values); }
 };
 
 TEST_F(FactoredBrdfTest, WarpedTablesAreThePublishedOnesAFiftiethWrong) {
-  const scene::Scene scene = ball(0.1f);
-  const double warped = error(scene, {{"texels", "128"}, {"format", "float32"}});
+  Errors errors(ball(0.1f));
+  const double warped = errors.of({{"texels", "128"}, {"format", "float32"}});
   const double published =
-      error(scene, {{"texels", "128"}, {"format", "float32"}, {"coordinates", "published"}});
+      errors.of({{"texels", "128"}, {"format", "float32"}, {"coordinates", "published"}});
   EXPECT_LT(warped, 3e-3);
   EXPECT_GT(published, 50 * warped);
-  EXPECT_LT(error(scene, {{"texels", "128"}, {"format", "half"}}), 3e-3);
+  EXPECT_LT(errors.of({{"texels", "128"}, {"format", "half"}}), 3e-3);
 }
 
 /// A ball hides the side light from half of a highlight, and a rectangle lights the scene by points.
@@ -116,11 +128,12 @@ TEST_F(FactoredBrdfTest, TablesErrAsLittleUnderEveryShadowTechnique) {
   lamp.light = static_cast<int>(scene.lights.size());
   scene.lights.push_back(rectangle);
   scene.nodes.push_back(lamp);
-  const double unshadowed = mean(drawn(scene, {}));
+  render::Renderer renderer(device(), scene);
+  const double unshadowed = mean(drawn(renderer, {}));
   for (const Term term : {Term::visibility, Term::direct})
     for (const std::string& name : techniquesAnswering(term)) {
-      const Image exact = drawn(scene, {quick(name)});
-      const double shadowed = errorOf(drawn(scene, {quick(name), technique("factored_brdf")}), exact);
+      const Image exact = drawn(renderer, {quick(name)});
+      const double shadowed = errorOf(drawn(renderer, {quick(name), technique("factored_brdf")}), exact);
       RecordProperty(name, std::to_string(shadowed) + " " + std::to_string(mean(exact) / unshadowed));
       EXPECT_LT(shadowed, 3e-3) << name;
       if (term == Term::visibility) {
@@ -145,17 +158,18 @@ TEST_F(FactoredBrdfTest, ModelsThatTurnWithTheTangentHaveTables) {
   std::swap(across.roughness.x, across.roughness.y);
   independent.options = glsl::model_option_product;
   hair.exponent = 4;
-  const scene::Scene mixed = balls({brushed, fibres, copper(0.3f), across, hair, copper(0.2f), independent,
-                                    copper(0.3f, glsl::model_phong)});
+  Errors ofBrushed(balls({brushed})), ofFibres(balls({fibres}));
+  Errors ofMixed(balls({brushed, fibres, copper(0.3f), across, hair, copper(0.2f), independent,
+                        copper(0.3f, glsl::model_phong)}));
   for (const char* format : {"float32", "half"}) {
-    EXPECT_LT(error(balls({brushed}), {{"format", format}}), 3e-3) << format;
-    EXPECT_LT(error(balls({fibres}), {{"format", format}}), 3e-3) << format;
-    EXPECT_LT(error(mixed, {{"format", format}}), 3e-3) << format;
+    EXPECT_LT(ofBrushed.of({{"format", format}}), 3e-3) << format;
+    EXPECT_LT(ofFibres.of({{"format", format}}), 3e-3) << format;
+    EXPECT_LT(ofMixed.of({{"format", format}}), 3e-3) << format;
   }
-  EXPECT_GT(error(balls({brushed}), {{"texels", "32"}}), 5 * error(balls({brushed}), {{"texels", "128"}}));
-  EXPECT_LT(error(balls({brushed}), {{"coordinates", "published"}}), 0.01);
+  EXPECT_GT(ofBrushed.of({{"texels", "32"}}), 5 * ofBrushed.of({{"texels", "128"}}));
+  EXPECT_LT(ofBrushed.of({{"coordinates", "published"}}), 0.01);
   for (const char* coordinates : {"warped", "published"})
-    error(mixed, {{"texels", "2"}, {"format", "byte"}, {"coordinates", coordinates}});
+    ofMixed.of({{"texels", "2"}, {"format", "byte"}, {"coordinates", coordinates}});
 }
 
 /// At an index of 5 and where light grazes the microfacets, Schlick's reflectance is off by a quarter.
@@ -168,30 +182,35 @@ TEST_F(FactoredBrdfTest, SchlicksReflectanceErrsMoreThanTheTables) {
     scene.lights[0].intensity = 0;
     scene.nodes.back().transform.rotation =
         glm::quatLookAt(glm::normalize(glm::vec3(-0.4f, 0, 0.92f)), glm::vec3(0, 1, 0));  // from behind
-    const double schlick = error(scene, {{"fresnel", "schlick"}});
+    Errors errors(scene);
+    const double schlick = errors.of({{"fresnel", "schlick"}});
     EXPECT_GT(schlick, 0.05) << kind;
-    EXPECT_GT(schlick, 20 * error(scene, {{"fresnel", "exact"}})) << kind;
+    EXPECT_GT(schlick, 20 * errors.of({{"fresnel", "exact"}})) << kind;
   }
 }
 
 TEST_F(FactoredBrdfTest, ExtremesAreFinite) {
-  for (const float roughness : {0.f, 1e-3f, 1.f})
-    for (const char* format : {"float32", "half", "byte"})
-      error(ball(roughness), {{"texels", "2"}, {"format", format}});
+  for (const float roughness : {0.f, 1e-3f, 1.f}) {
+    Errors errors(ball(roughness));
+    for (const char* format : {"float32", "half", "byte"}) errors.of({{"texels", "2"}, {"format", format}});
+  }
+  Errors errors(ball(1e-3f));
   for (const char* fit : {"tables", "dfg", "pqp", "pqp_disc", "svd", "trilinear"})
-    error(ball(1e-3f), {{"fit", fit}, {"fit_texels", "2"}, {"format", "byte"}});
+    errors.of({{"fit", fit}, {"fit_texels", "2"}, {"format", "byte"}});
 }
 
 /// Roughness 0 is the narrowest lobe that there is; tables of 2 texels spread its peak over the ball.
 TEST_F(FactoredBrdfTest, LightsAsBrightAsTheSunGiveTheSamePictureAsDimOnes) {
+  scene::Scene sunlit = ball(0), dim = sunlit;
+  for (scene::LightSource& light : sunlit.lights) light.intensity = 1e5f;
+  for (scene::LightSource& light : dim.lights) light.intensity = 2;
+  render::Renderer underSuns(device(), sunlit), underLamps(device(), dim);
   for (const char* texels : {"2", "16"}) {
-    const auto under = [&](float intensity) {
-      scene::Scene scene = ball(0);
-      for (scene::LightSource& light : scene.lights) light.intensity = intensity;
-      return drawn(scene, {technique("factored_brdf", {{"texels", texels}, {"format", "half"}})});
+    const auto under = [&](render::Renderer& lights) {
+      return drawn(lights, {technique("factored_brdf", {{"texels", texels}, {"format", "half"}})});
     };
-    const Image bright = under(1e5f);
-    Image expected = under(2);
+    const Image bright = under(underSuns);
+    Image expected = under(underLamps);
     for (float& value : expected.data()) value *= 5e4f;
     EXPECT_LE(errorOf(bright, expected), 1e-3)
         << texels << " texels, in the mean " << mean(bright) << " for " << mean(expected);
@@ -202,6 +221,7 @@ TEST_F(FactoredBrdfTest, LightsAsBrightAsTheSunGiveTheSamePictureAsDimOnes) {
 /// lights, and this one few.
 TEST_F(FactoredBrdfTest, FitsAreAsExactAsTheySay) {
   const scene::Scene scene = ball(0.3f);
+  Errors errors(scene);
   const glsl::MaterialModel model = *scene.materials.back().model;
   const brdf::Brdf exact = [&](const glm::dvec3& l, const glm::dvec3& v) {
     return glm::dvec3(glsl::model_response(model, glm::vec3(v), glm::vec3(l))) / l.z;
@@ -217,13 +237,13 @@ TEST_F(FactoredBrdfTest, FitsAreAsExactAsTheySay) {
     fit.terms = terms;
     fit.samples = 8000;
     const double own = brdf::fitBrdf(exact, fit).error;
-    const double found = error(scene, {{"fit", name}, {"terms", std::to_string(terms)}});
+    const double found = errors.of({{"fit", name}, {"terms", std::to_string(terms)}});
     RecordProperty(name, std::to_string(own) + " " + std::to_string(found));
     // Weights of linear filtering have 8 bits on GPUs: at a logarithm's steepest that is 2e-3 more.
     EXPECT_LE(found, 1.5 * own + 2e-3) << name;
   }
-  EXPECT_LE(error(scene, {{"fit", "dfg"}}), 0.01);
-  EXPECT_EQ(error(scene, {{"fit", "exact"}}), 0);
+  EXPECT_LE(errors.of({{"fit", "dfg"}}), 0.01);
+  EXPECT_EQ(errors.of({{"fit", "exact"}}), 0);
 }
 
 /// A fit is looked up behind those of the materials before it; equal materials share one, and black ones and
@@ -232,21 +252,21 @@ TEST_F(FactoredBrdfTest, MaterialsHaveTablesOfTheirOwn) {
   glsl::MaterialModel brushed = copper(0.2f, glsl::model_ward), black = copper(0.2f);
   brushed.roughness.y = 0.4f;
   black.ks = black.kd = glm::vec3(0);
-  const scene::Scene scene =
-      balls({copper(0.3f), copper(0.5f), black, copper(0.3f), brushed, copper(0.4f, glsl::model_ward)});
+  Errors errors(
+      balls({copper(0.3f), copper(0.5f), black, copper(0.3f), brushed, copper(0.4f, glsl::model_ward)}));
   // On the CPU the worst of these balls has 0.001, 0.006, 0.005, 0.013 and 0.064, most by the brushed one.
-  for (const char* name : {"tables", "dfg"}) EXPECT_LE(error(scene, {{"fit", name}}), 0.01) << name;
-  for (const char* name : {"pqp", "trilinear"}) EXPECT_LE(error(scene, {{"fit", name}}), 0.015) << name;
-  EXPECT_LE(error(scene, {{"fit", "pqp_disc"}}), 0.025);
-  EXPECT_LE(error(scene, {{"fit", "svd"}, {"terms", "4"}}), 0.08);
+  for (const char* name : {"tables", "dfg"}) EXPECT_LE(errors.of({{"fit", name}}), 0.01) << name;
+  for (const char* name : {"pqp", "trilinear"}) EXPECT_LE(errors.of({{"fit", name}}), 0.015) << name;
+  EXPECT_LE(errors.of({{"fit", "pqp_disc"}}), 0.025);
+  EXPECT_LE(errors.of({{"fit", "svd"}, {"terms", "4"}}), 0.08);
 }
 
 TEST_F(FactoredBrdfTest, SaysWhichMaterialsAreExact) {
   glsl::MaterialModel brushed = copper(0.2f, glsl::model_ward);
   brushed.roughness.y = 0.4f;
   const scene::Scene scene = balls({copper(0.3f), brushed});
+  render::Renderer renderer(device(), scene);
   for (const char* name : {"trilinear", "svd"}) {
-    render::Renderer renderer(device(), scene);
     renderer.configure(settings(48, 36, Term::direct, {technique("factored_brdf", {{"fit", name}})}));
     renderer.setCamera(scene::lookAt({0.3f, 0.8f, 3}, {0, 0, 0}, 0.8f));
     renderer.render();

@@ -68,6 +68,9 @@ class GlTest : public ::testing::Test {
     EXPECT_EQ(now.textureBytes, before_.textureBytes);
   }
 
+  /// Programs that live on for other tests of the suite do not count as left behind by this one.
+  void keepPrograms() { before_.programs = device().counters().programs; }
+
   static Context& context() { return *suite_->context; }
   static gpu::Device& device() { return suite_->device; }
   static const gl::Functions& gl() { return suite_->context->gl(); }
@@ -111,6 +114,36 @@ class GlTest : public ::testing::Test {
 
   std::optional<gpu::ShaderLibrary> shaders_;
   gpu::Counters before_;
+};
+
+/// Compiles each program once for all tests of a suite, which mount no two texts under one name. Whether any
+/// is left behind shows at the end of the suite.
+class SharedProgramsTest : public GlTest {
+ public:
+  static void SetUpTestSuite() {
+    GlTest::SetUpTestSuite();
+    library_.emplace(device());
+    library_->mount("", embeddedSources());
+  }
+  static void TearDownTestSuite() {
+    if (library_) {  // not where there was no context
+      library_.reset();
+      EXPECT_EQ(device().counters().programs, 0) << "live programs";
+    }
+    GlTest::TearDownTestSuite();
+  }
+
+ protected:
+  void TearDown() override {
+    keepPrograms();
+    GlTest::TearDown();
+  }
+
+  /// The library of the suite, with limn's own sources.
+  static gpu::ShaderLibrary& shaders() { return *library_; }
+
+ private:
+  static inline std::optional<gpu::ShaderLibrary> library_;
 };
 
 /// Laws of techniques take minutes and say of one renderer the same twice: under OSMesa they are skipped

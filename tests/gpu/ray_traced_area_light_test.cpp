@@ -61,31 +61,30 @@ TEST_F(RayTracedAreaLightTest, ConvergesToTheReference) {
   struct Case {
     const char* scene;
     double time;
-    int light;
+    int lights;  ///< how many of them, if there are as many
   };
-  for (const Case& c : {Case{"balls", 0, 0},
-                        {"plant", 0, 0},
-                        {"foliage_card", 0, 0},
-                        {"robot", 0.4, 0},
-                        {"cornell_horse", 1.3, 0},
-                        {"metaballs", 0.7, 0},
-                        {"lights", 0, 0},
-                        {"lights", 0, 1},
-                        {"lights", 0, 2},
-                        {"lights", 0, 3}}) {
+  for (const Case& c : {Case{"balls", 0, 1},
+                        {"plant", 0, 1},
+                        {"foliage_card", 0, 1},
+                        {"robot", 0.4, 1},
+                        {"cornell_horse", 1.3, 1},
+                        {"metaballs", 0.7, 1},
+                        {"lights", 0, 4}}) {
     SCOPED_TRACE(c.scene);
     const scene::Scene scene = asset(c.scene);
     render::Renderer renderer(device(), scene);
-    if (c.light >= static_cast<int>(renderer.pose().lights.size())) continue;
-    renderer.configure(rays(4, c.light));
-    const Image few = at(renderer, c.time);
-    const Image exact = truth(renderer, scene, c.light);
-    renderer.configure(rays(128, c.light));
-    const double error[] = {difference(few, exact), difference(at(renderer, c.time), exact)};
-    std::printf("%s at %.1f s, light %d: RMSE of V %.4f with 4 rays, %.4f with 128\n", c.scene, c.time,
-                c.light, error[0], error[1]);
-    EXPECT_LT(error[0], 0.1);
-    EXPECT_LT(error[1], 0.025);
+    const int lights = std::min(c.lights, static_cast<int>(renderer.pose().lights.size()));
+    for (int light = 0; light < lights; ++light) {
+      renderer.configure(rays(4, light));
+      const Image few = at(renderer, c.time);
+      const Image exact = truth(renderer, scene, light);
+      renderer.configure(rays(128, light));
+      const double error[] = {difference(few, exact), difference(at(renderer, c.time), exact)};
+      std::printf("%s at %.1f s, light %d: RMSE of V %.4f with 4 rays, %.4f with 128\n", c.scene, c.time,
+                  light, error[0], error[1]);
+      EXPECT_LT(error[0], 0.1);
+      EXPECT_LT(error[1], 0.025);
+    }
   }
 }
 

@@ -24,7 +24,7 @@ class RestrictedTermsTest : public RenderTest {
     return picture(renderer, settings(48, 36, term, std::move(techniques), light));
   }
   static scene::Scene underTwoLightsOfTheSky() {
-    scene::Scene scene = asset("balls_sky");
+    scene::Scene scene = coarse("balls_sky");
     scene.environment.lights =
         shading::decomposeEnvironment(scene.environment, {.threshold = 0.1, .resolution = 24}).lights;
     scene.environment.lights.resize(2);

@@ -41,7 +41,7 @@ inline glm::vec3 positionOf(const Answer& v, const scene::CameraPose& camera, co
               static_cast<float>(y) * glm::vec3(frame.view_ray_dy));
 }
 
-class TechniqueTest : public OncePerRenderer<GlTest> {
+class TechniqueTest : public OncePerRenderer<SharedProgramsTest> {
  protected:
   static constexpr int side = 128;
   bool bound = false;  ///< the technique's bound answers in its place, where it has one

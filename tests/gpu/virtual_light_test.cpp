@@ -32,7 +32,7 @@ scene::Material lambert(vec3 albedo) {
   return m;
 }
 
-class VirtualLightTest : public OncePerRenderer<GlTest> {
+class VirtualLightTest : public OncePerRenderer<SharedProgramsTest> {
  protected:
   Sampled sample(const scene::Scene& scene, const scene::Pose& pose, const indirect::VirtualLightDesc& desc) {
     std::vector<uint32_t> all(pose.lights.size());
