@@ -2,7 +2,6 @@
 #include <algorithm>
 #include <string>
 
-#include "core/scene/material_model.h"
 #include "glsl/materials/material_model.glsl"
 #include "tests/gpu/environment_harness.h"
 
@@ -28,24 +27,6 @@ class EnvironmentCombineTest : public EnvironmentTest {
   }
 
   static render::TechniqueUse hard() { return technique("hard_shadow_map", {{"shadow_map_size", "512"}}); }
-
-  /// The floor, of another material, below a roof that hides all of the sky.
-  static scene::Scene roofed(scene::Scene scene) {
-    scene::Node roof;
-    roof.mesh = 0;
-    roof.transform.translation = {0, 6, 0};
-    scene.nodes.push_back(roof);
-    return scene;
-  }
-  static scene::Scene mirror() {
-    scene::Scene scene = floor();
-    glsl::MaterialModel model{};
-    model.kind = glsl::model_coated;
-    model.eta = vec3(1e-3f);
-    model.k = vec3(1000);
-    scene::setModel(scene.materials.front(), model);
-    return scene;
-  }
 };
 
 /// Of metallic-roughness, of coats, of material models, and of what enters and leaves translucent bodies.

@@ -10,6 +10,7 @@
 #include <vector>
 
 #include "core/reference/reference.h"
+#include "core/scene/material_model.h"
 #include "core/shading/environment_decomposition.h"
 #include "tests/gpu/render_test.h"
 #include "tests/support/environment_maps.h"
@@ -98,6 +99,24 @@ class EnvironmentTest : public RenderTest {
     camera.transform.rotation = glm::angleAxis(-0.5f * glsl::pi, glm::vec3(1, 0, 0));
     scene.cameras.emplace_back();
     scene.nodes.push_back(camera);
+    return scene;
+  }
+  /// Puts a roof over the floor that hides all of the sky.
+  static scene::Scene roofed(scene::Scene scene) {
+    scene::Node roof;
+    roof.mesh = 0;
+    roof.transform.translation = {0, 6, 0};
+    scene.nodes.push_back(roof);
+    return scene;
+  }
+  /// A floor that is a perfect mirror.
+  static scene::Scene mirror() {
+    scene::Scene scene = floor();
+    glsl::MaterialModel model{};
+    model.kind = glsl::model_coated;
+    model.eta = glm::vec3(1e-3f);
+    model.k = glm::vec3(1000);
+    scene::setModel(scene.materials.front(), model);
     return scene;
   }
 

@@ -2,7 +2,6 @@
 #include <algorithm>
 
 #include "core/base/error.h"
-#include "core/scene/material_model.h"
 #include "tests/gpu/environment_harness.h"
 
 namespace limn {
@@ -10,19 +9,7 @@ namespace {
 
 using glm::vec3;
 
-class EnvironmentShadowTest : public EnvironmentTest {
- protected:
-  /// A floor that is a perfect mirror, under a sky of radiance 2.
-  static scene::Scene mirrorUnderSky() {
-    scene::Scene scene = lit(floor(), uniform(2), 0);
-    glsl::MaterialModel mirror{};
-    mirror.kind = glsl::model_coated;
-    mirror.eta = vec3(1e-3f);
-    mirror.k = vec3(1000);
-    scene::setModel(scene.materials.front(), mirror);
-    return scene;
-  }
-};
+using EnvironmentShadowTest = EnvironmentTest;
 
 TEST_F(EnvironmentShadowTest, PosesHoldTheLightsOfTheEnvironmentBehindTheirOwn) {
   scene::Scene scene = coarse("balls");
@@ -85,25 +72,19 @@ TEST_F(EnvironmentShadowTest, AUniformSkyOverAPlaneGivesPiTimesItsRadiance) {
 
 /// A floor that is a perfect mirror shows the sky, and nothing under a roof that hides all of it.
 TEST_F(EnvironmentShadowTest, CoatsMirrorWhatIsNotHidden) {
-  for (const bool roofed : {false, true}) {
-    scene::Scene scene = mirrorUnderSky();
-    if (roofed) {
-      scene::Node roof;
-      roof.mesh = 0;
-      roof.transform.translation = {0, 6, 0};
-      scene.nodes.push_back(roof);
-    }
+  for (const bool hidden : {false, true}) {
+    const scene::Scene scene = lit(hidden ? roofed(mirror()) : mirror(), uniform(2), 0);
     render::Renderer renderer(device(), scene);
     for (const std::string& name : shadowingTechniques()) {
       const Image picture = this->picture(renderer, settings(16, 12, Term::direct, {sampled(name, 64)}));
-      for (const float v : picture.data()) EXPECT_NEAR(v, roofed ? 0 : 2, 0.02f) << name << roofed;
+      for (const float v : picture.data()) EXPECT_NEAR(v, hidden ? 0 : 2, 0.02f) << name << hidden;
     }
   }
 }
 
 /// A medium takes from what coats mirror what it takes along the mirror direction.
 TEST_F(EnvironmentShadowTest, CoatsMirrorThroughTheMedium) {
-  scene::Scene scene = mirrorUnderSky();
+  scene::Scene scene = lit(mirror(), uniform(2), 0);
   scene.medium.sigmaA = vec3(0.005f, 0.01f, 0.02f);
   render::Renderer renderer(device(), scene);
   const render::Settings bare = settings(16, 12, Term::direct);
