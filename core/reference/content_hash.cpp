@@ -150,6 +150,11 @@ void addWork(Hasher& h, const Request& r) {
   const bool chains = r.term == Term::specular && r.interfaces == kAllInterfaces;
   const bool specular = std::ranges::any_of(r.scene.materials, &scene::Material::specularSurface);
   if (specular && (caustics || chains)) h.add(causticVersion);
+  constexpr uint32_t squaredIndices = 0x1d62;  // earlier results show what is in bodies n^2 too bright
+  const bool seen = r.interfaces != 0 && (r.term == Term::final || r.term == Term::specular);
+  const bool bodies = std::ranges::any_of(
+      r.scene.materials, [](const scene::Material& m) { return m.transmission > 0 && m.thickness > 0; });
+  if (seen && bodies) h.add(squaredIndices);
   constexpr uint32_t hiddenAsSeen = 0x5eeb;  // earlier results lack caustics behind back faces
   if (specular && (r.term == Term::final || r.term == Term::caustic)) h.add(hiddenAsSeen);
   constexpr uint32_t airlightVersion = 0xa162;

@@ -43,7 +43,8 @@ bool SpecularPaths::many() const {
 }
 
 SpecularEnd SpecularPaths::backgroundAlong(const Ray& ray, const glm::vec3& from) const {
-  return {ray.throughput * doubles(rays_.medium().transmittanceToInfinity(from, ray.direction)), std::nullopt,
+  const glm::vec3 passes = rays_.medium().transmittanceToInfinity(from, ray.direction);
+  return {ray.throughput * ray.atCamera * doubles(passes), std::nullopt,
           environment_.radiance(ray.direction)};
 }
 
@@ -54,7 +55,7 @@ SpecularEnd SpecularPaths::endAt(const Ray& ray, const Hit& hit, const glm::vec3
   if (!surface) return {};
   const glm::vec3 passes = body ? glsl::optics_absorption(*body, hit.depth)
                                 : rays_.medium().transmittanceBetween(from, surface->position);
-  return {ray.throughput * doubles(passes), surface};
+  return {ray.throughput * (ray.atCamera / ray.here) * doubles(passes), surface};
 }
 
 /// The end of a ray that specular surfaces do not stop.
@@ -86,20 +87,24 @@ SpecularEnd SpecularPaths::throughBody(const Surface& seen, const glsl::Optics& 
     ray.origin = exit.position + side * exit.rayOffset * exit.geometricNormal;
     ray.direction = inside ? event.reflected : event.refracted;
     ray.throughput *= doubles(inside ? event.reflectance : event.transmittance);
-    if (!inside) return matteAlong(ray);
+    if (inside) continue;
+    ray.here = 1;
+    return matteAlong(ray);
   }
 }
 
 std::array<SpecularEnd, 2> SpecularPaths::imageSpace(const Surface& seen) const {
   const First first(seen, *rays_.draws()[seen.draw].material);
-  const auto ray = [&](const glm::vec3& direction, const glm::vec3& share) {
-    return Ray{seen.rayOrigin(direction), direction, doubles(share)};
+  const double before = glsl::squared_index(first.optics, first.inside);
+  const auto ray = [&](const glm::vec3& direction, const glm::vec3& share, double here) {
+    return Ray{seen.rayOrigin(direction), direction, doubles(share), before, here};
   };
   std::array<SpecularEnd, 2> ends;
   if (first.event.reflectance != glm::vec3(0))
-    ends[0] = matteAlong(ray(first.event.reflected, first.event.reflectance));
+    ends[0] = matteAlong(ray(first.event.reflected, first.event.reflectance, before));
   if (first.event.refracted == glm::vec3(0) || first.event.transmittance == glm::vec3(0)) return ends;
-  const Ray refracted = ray(first.event.refracted, first.event.transmittance);
+  const Ray refracted =
+      ray(first.event.refracted, first.event.transmittance, glsl::squared_index(first.optics, !first.inside));
   const bool straight = first.inside || !(first.optics.thickness > 0);
   ends[1] = straight ? matteAlong(refracted) : throughBody(seen, first.optics, refracted);
   return ends;
@@ -110,7 +115,8 @@ SpecularEnd SpecularPaths::sample(const Surface& seen, const Sampler& sampler) c
   glsl::Optics optics = first.optics;
   bool back = first.inside;
   glsl::SpecularEvent event = first.event;
-  Ray ray{seen.position, -seen.view, glm::dvec3(1)};
+  const double before = glsl::squared_index(optics, back);
+  Ray ray{seen.position, -seen.view, glm::dvec3(1), before, before};
   glm::vec3 position = seen.position, away = seen.rayOffset * seen.values.geometric_normal;
   for (uint32_t i = 0; i < kMostEvents; ++i) {
     const glm::vec2 u = sampler.pair(firstPair + i);
@@ -122,6 +128,8 @@ SpecularEnd SpecularPaths::sample(const Surface& seen, const Sampler& sampler) c
     const bool mirrored = static_cast<double>(u.x) < probability;
     ray.throughput *= mirrored ? reflected / probability : passing / (1 - probability);
     ray.direction = mirrored ? event.reflected : event.refracted;
+    if (!mirrored)
+      ray.here = ray.here / glsl::squared_index(optics, back) * glsl::squared_index(optics, !back);
     if (i >= kFirstEventRoulette) {
       const double survival = std::min(largest(ray.throughput), 1.0);
       if (static_cast<double>(u.y) >= survival) return {};

@@ -57,6 +57,13 @@ LIMN_FN SpecularEvent specular_event(Optics o, vec3 direction, vec3 n, bool insi
   return e;
 }
 
+// Square of the index of refraction on one side of an interface, `inside` or outside, as specular_event() takes it. Radiance over
+// this square is what goes along a refracted ray, less what the interface reflects (Veach 1997, section 5.2); flux passes without
+// it. Both sides of a thin wall have 1.
+LIMN_FN float squared_index(Optics o, bool inside) {
+  return inside && o.thickness > 0.0f ? o.ior * o.ior : 1.0f;
+}
+
 // What the flux of light along `direction` (unit, of propagation) is multiplied by where it leaves a surface along
 // `leaving`, besides the reflectance or transmittance: 1 unless the shading normal n differs from the geometric normal ng
 // (either side). A shading normal keeps radiance as it is (times the square of the indices' ratio), not the flux through the

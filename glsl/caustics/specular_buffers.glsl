@@ -40,11 +40,13 @@ struct ObjectViews {
   int layer;   // of the first view
 };
 
-// Whether a surface at p bounds no body: light stays in the medium behind it.
-bool is_sheet(ShadowView view, vec3 p, int layer, float instance) {
-  vec2 depths = body_depths(float(view.size) * shadow_project(view, p).uv, layer, instance);
-  return !(depths.y - depths.x > 1e-6);
+// body_depths() where a view sees p.
+vec2 body_depths_at(ShadowView view, vec3 p, int layer, float instance) {
+  return body_depths(float(view.size) * shadow_project(view, p).uv, layer, instance);
 }
+
+// Whether a surface with these depths bounds no body: light stays in the medium behind it.
+bool is_sheet(vec2 depths) { return !(depths.y - depths.x > 1e-6); }
 
 // Normal at uv: interpolated where the surface is smooth, that of the nearest texel across an edge; 0: nothing there.
 vec3 buffer_normal(sampler2DArray surfaces, vec2 uv, int layer, float instance) {
@@ -84,13 +86,24 @@ int body_side(ObjectViews objects, MapPath path, float t, float instance, float 
   return before ? body_front : body_inside;
 }
 
-// Whether a place on a path through the view lies between the nearest and the farthest surface of an object, by the texel that
-// holds it. Where there is nothing, both depths are 1.
-bool within_object(MapPath path, MapPlace place, int layer, float tolerance) {
-  ivec3 texel = ivec3(map_path_texel(path, place), layer);
-  return map_path_inside(path, place) &&
-         map_path_behind(path, place, texelFetch(front_depth, texel, 0).x) > tolerance &&
+// Whether a place on a path through the view lies between the nearest and the farthest surface of a texel. Where there is nothing,
+// both depths are 1.
+bool between_surfaces(MapPath path, MapPlace place, ivec3 texel, float tolerance) {
+  return map_path_behind(path, place, texelFetch(front_depth, texel, 0).x) > tolerance &&
          map_path_behind(path, place, texelFetch(back_depth, texel, 0).x) < -tolerance;
+}
+
+// Whether such a place lies within an object: by the texel that holds it, and where light is just `leaving` one by each of the four
+// texels around it, since by one alone it would still be within where the surface is steep.
+bool within_object(MapPath path, MapPlace place, int layer, float tolerance, bool leaving) {
+  if (!map_path_inside(path, place)) return false;
+  if (!between_surfaces(path, place, ivec3(map_path_texel(path, place), layer), tolerance)) return false;
+  ivec2 low = ivec2(floor(place.texel - 0.5));
+  for (int i = 0; i < (leaving ? 4 : 0); ++i) {
+    ivec2 texel = clamp(low + ivec2(i & 1, i >> 1), ivec2(0), ivec2(path.size) - 1);
+    if (!between_surfaces(path, place, ivec3(texel, layer), tolerance)) return false;
+  }
+  return true;
 }
 
 // Where light inside an object leaves it.

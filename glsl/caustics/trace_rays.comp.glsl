@@ -64,12 +64,16 @@ const int place_object = 2;  // within a specular object
 struct TracedRay {
   MapPath scene;
   MapPath objects;
+  vec2 start;  // texel in these views
 };
+
+const float leaving_texels = 2.0;  // from the start of a ray, in which it has not left its object for certain
 
 int place_of(SceneMaps maps, ObjectViews objects, TracedRay ray, float t) {
   MapPlace place = map_path_place(ray.objects, objects.first.projection, objects.faces, t);
   int layer = objects.layer + int(place.face);
-  bool within = within_object(ray.objects, place, layer, shadow_footprint(objects.first, place.depth));
+  bool leaving = length(place.texel - ray.start) < leaving_texels;
+  bool within = within_object(ray.objects, place, layer, shadow_footprint(objects.first, place.depth), leaving);
   return behind_scene(maps, ray.scene, t) > 0.0 ? place_scene : (within ? place_object : place_free);
 }
 
@@ -97,8 +101,9 @@ vec3 end_normal(SceneMaps maps, vec3 p, vec3 direction) {
 
 // Ends the ray where it passes from before the scene to behind it, or into a specular object, as the light sees them.
 void find_end(SceneMaps maps, ObjectViews objects, inout CausticRay ray) {
-  TracedRay traced =
-      TracedRay(map_path(maps.first, ray.start, ray.direction), map_path(objects.first, ray.start, ray.direction));
+  MapPath in_objects = map_path(objects.first, ray.start, ray.direction);
+  MapPlace start = map_path_place(in_objects, objects.first.projection, objects.faces, 0.0);
+  TracedRay traced = TracedRay(map_path(maps.first, ray.start, ray.direction), in_objects, start.texel);
   float stride = ray.segment_length / float(steps);
   float before = 0.0;
   float behind = -1.0;
@@ -177,7 +182,7 @@ CausticRay refracted_ray(Medium medium, SceneMaps maps, Incident at, SpecularEve
   if (event.refracted == vec3(0.0)) return no_ray();
   vec3 flux = at.flux * event.transmittance * shading_flux(at.normal, at.geometric, at.direction, event.refracted);
   if (flux == vec3(0.0)) return no_ray();
-  if (at.inside || is_sheet(at.view, at.position, at.layer, at.instance) || !(at.optics.thickness > 0.0))
+  if (at.inside || !(at.optics.thickness > 0.0) || is_sheet(body_depths_at(at.view, at.position, at.layer, at.instance)))
     return ray_from(medium, maps, at, at.position, event.refracted, flux);
   BodyExit leaves = body_exit(at.objects, at.position, event.refracted, diameter, at.instance);
   if (!(dot(leaves.normal, event.refracted) > least_cosine)) return no_ray();

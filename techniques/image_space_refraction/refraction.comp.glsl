@@ -24,17 +24,18 @@ uniform int steps;
 
 const float least_cosine = 1e-4;
 
-// Light that comes against `direction` (unit) to `origin`, off every surface that is not specular.
-vec3 scene_radiance(vec3 origin, vec3 direction) {
+// Light that comes against `direction` (unit) to `origin`, off every surface that is not specular, as the camera has it: squared
+// indices of refraction of where it is and of where these surfaces are. The environment is outside of all bodies.
+vec3 scene_radiance(vec3 origin, vec3 direction, float at_camera, float here) {
   float reach = max(ball_range(frame.medium_ball, origin, direction).y, 0.0);
   SceneHit hit = scene_hit(origin, direction, reach, steps);
   vec3 light = vec3(0.0);
   if (hit.t >= 0.0) {
-    light = radiance_at(hit, origin + hit.t * direction);
+    light = at_camera / here * radiance_at(hit, origin + hit.t * direction);
   } else {
 #if ENVIRONMENT
     vec2 uv = equirectangular_uv(environment_lookup_direction(direction, frame.environment_rotation));
-    light = frame.environment_scale * textureLod(environment_map, uv, 0.0).rgb;
+    light = at_camera * frame.environment_scale * textureLod(environment_map, uv, 0.0).rgb;
 #endif
   }
 #if MEDIUM
@@ -89,13 +90,19 @@ void main() {
   vec3 normal = dot(s.normal, view) > least_cosine ? s.normal : s.geometric_normal;
   bool inside = (s.flags & gbuffer_flag_back) != 0u;
   SpecularEvent event = specular_event(optics, -view, normal, inside);
+  float at_camera = squared_index(optics, inside);
   vec3 light = vec3(0.0);
-  if (event.reflectance != vec3(0.0)) light += event.reflectance * scene_radiance(position, event.reflected);
-  Way way = Way(position, event.refracted, event.refracted == vec3(0.0) ? vec3(0.0) : event.transmittance);
-  bool straight = inside || !(optics.thickness > 0.0) || is_sheet(views[0], position, 0, float(instance + 1u));
-  if (!straight && way.weight != vec3(0.0)) {
-    way = through_body(optics, way.origin, way.direction, way.weight, float(instance + 1u));
+  if (event.reflectance != vec3(0.0)) {
+    light += event.reflectance * scene_radiance(position, event.reflected, at_camera, at_camera);
   }
-  if (way.weight != vec3(0.0)) light += way.weight * scene_radiance(way.origin, way.direction);
+  Way way = Way(position, event.refracted, event.refracted == vec3(0.0) ? vec3(0.0) : event.transmittance);
+  float object = float(instance + 1u);
+  bool bends = !inside && optics.thickness > 0.0;
+  vec2 depths = bends ? body_depths_at(views[0], position, 0, object) : vec2(-1.0);
+  bool through = bends && !is_sheet(depths);
+  if (through && way.weight != vec3(0.0)) way = through_body(optics, way.origin, way.direction, way.weight, object);
+  // Light of what lies behind a sheet has one interface to pass; of the edge of a body that the buffers lack, as many as elsewhere.
+  float here = squared_index(optics, !through && depths.x >= 0.0);
+  if (way.weight != vec3(0.0)) light += way.weight * scene_radiance(way.origin, way.direction, at_camera, here);
   imageStore(seen, pixel, vec4(light, 1.0));
 }

@@ -124,6 +124,21 @@ TEST_F(SurfaceCausticsTest, FloorsWithAModelReflectTheirDiffusePart) {
   EXPECT_NEAR(brightness() / matte, (1 - 0.04) * (1 - 0.596) / (1 - 0.6 * 0.596), 0.01);
 }
 
+/// The search for the end of a ray begins on the steep sides of what it leaves as well: points close together
+/// are not to find it within. A ball would lose 2.7 % of its caustic that way, and the ring 14 %.
+TEST_F(SurfaceCausticsTest, AFinerSearchLosesNoLight) {
+  for (const char* name : {"glass_sphere", "ring"}) {
+    scene::Scene scene = asset(name);
+    scene.medium = {};
+    render::Renderer renderer(device(), scene);
+    const auto brightness = [&](const char* steps) {
+      return mean(picture(renderer, settings(64, 48, Term::caustic,
+                                             {technique("surface_caustics", {{"ray_steps", steps}})})));
+    };
+    EXPECT_NEAR(brightness("1024") / brightness("64"), 1, 0.005) << name;
+  }
+}
+
 /// All of the floor is seen by the light. Where the ring's caustic is thinner than a pixel, photons on the
 /// screen are wider than those in the map: a kernel has at least a pixel, or a texel.
 TEST_F(SurfaceCausticsTest, CausticMapsShowWhatPhotonsOnTheScreenDo) {

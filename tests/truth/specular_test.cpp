@@ -91,6 +91,32 @@ TEST_F(SpecularTruth, GlassShowsTheShiftedWallTimesWhatItsSidesPass) {
                   {.mean = 2e-3, .average = 0.03});
 }
 
+/// Water shows what lies beyond its surface times what that passes and the square of the indices' ratio,
+/// since radiance over n^2 goes along a ray (Veach 1997, section 5.2): from outside what lies in it is
+/// darker, from within what lies outside brighter.
+TEST_F(SpecularTruth, WaterShowsWhatLiesBeyondItByTheSquareOfTheIndices) {
+  constexpr double ior = 1.33;
+  for (const bool within : {false, true}) {
+    SCOPED_TRACE(within ? "within" : "outside");
+    const double here = within ? ior : 1, there = within ? 1 : ior;
+    scene::Scene scene = wall();
+    scene::Material water = test::glass(float(ior));
+    water.doubleSided = true;
+    test::show(scene, test::quad({0, 0, 0}, {6, 0, 0}, {0, within ? -6.f : 6.f, 0},
+                                 test::addMaterial(scene, water)));
+    const auto expected = [&](const dvec3& p, const dvec3& w) {
+      const dvec3 passed = test::snell(w, dvec3(0, 0, 1), here / there), met = p - 3 / passed.z * passed;
+      // What lies off the screen is not in the picture.
+      if (std::abs(p.z) > 1e-3 || std::max(std::abs(met.x), std::abs(met.y)) > 2) return nothing;
+      const double passes = 1 - test::fresnel(-w.z, here, there);
+      return passes * std::pow(here / there, 2) * wallAlong(p, passed);
+    };
+    const auto camera = scene::lookAt({0.2f, 0.1f, 3}, {0.2f, 0.1f, 0}, 0.8f);
+    expectBoth(scene, question(camera, reference::kImageSpaceInterfaces, 2), expected,
+               {.mean = 2e-3, .average = 0.005});
+  }
+}
+
 /// The sun and a mirror of 1 m in fog: along a view ray the fog scatters the sun's own light, but for the
 /// mirror's shadow, and the beam that the mirror sends back, each dimmed over its way from where it enters
 /// the bounding sphere and on to the eye, with Henyey and Greenstein's phase function (1941).

@@ -278,9 +278,76 @@ TEST(ReferenceSpecular, WithoutLimitAMatteThingInGlassIsSeenThroughItAlone) {
   };
   for (const float sigma : {0.f, 1.f}) {
     slab.scene.medium.sigmaA = prism.scene.medium.sigmaA = vec3(sigma);
-    const double before = std::exp(-0.5 * double(sigma));
-    EXPECT_NEAR(seen(slab) / before, 0.96 * 0.5, 3e-3) << sigma;
-    EXPECT_NEAR(seen(prism) / before, 0.96 * std::pow(0.5, 1.5), 3e-3) << sigma;
+    const double before = std::exp(-0.5 * double(sigma)), leaves = 0.96 / (1.5 * 1.5);
+    EXPECT_NEAR(seen(slab) / before, leaves * 0.5, 3e-3) << sigma;
+    EXPECT_NEAR(seen(prism) / before, leaves * std::pow(0.5, 1.5), 3e-3) << sigma;
+  }
+}
+
+/// A furnace with water or glass in it. Its sky shines with 1, and what is black in a body of index n with
+/// n^2, as black bodies there do: radiance over n^2 goes through interfaces, and is 1 wherever it is measured
+/// (Veach 1997, section 5.2).
+class Furnace {
+ public:
+  explicit Furnace(float ior) : ior_(ior), glass_(addGlass(world, ior)), black_(world.addMaterial(vec3(0))) {
+    world.scene.materials[static_cast<size_t>(glass_)].doubleSided = true;  // seen from within as well
+    world.scene.materials[static_cast<size_t>(black_)].emission = vec3(ior * ior);
+    world.scene.environment.width = 4;
+    world.scene.environment.height = 2;
+    world.scene.environment.texels.assign(8, vec3(1));
+  }
+
+  /// Adds a sheet of water over a black ground, 0.5 m deep.
+  void addPool() {
+    world.addQuad({0, 0, 0}, {4, 0, 0}, {0, 0, -4}, glass_);
+    world.addQuad({0, -0.5f, 0}, {40, 0, 0}, {0, 0, -40}, black_);
+  }
+  /// Adds a ball of glass with a black one within.
+  void addBall() {
+    world.addInstance(world.addMesh(World::sphere(48, glass_)));
+    world.addInstance(world.addMesh(World::sphere(24, black_)), glm::scale(glm::mat4(1), vec3(0.4f)));
+  }
+
+  /// Expects `radiance` in all pixels that show the glass.
+  void expectEvery(double radiance, int interfaces, const vec3& eye, const vec3& target) {
+    world.camera = scene::lookAt(eye, target, 0.8f);
+    const Image image = render(specularRequest(world, 16, interfaces, 64)).image;
+    int shown = 0;
+    for (int y = 0; y < 16; ++y)
+      for (int x = 0; x < 16; ++x) {
+        if (image.at(x, y, image.channel("id")) != 0.f) continue;
+        ++shown;
+        ASSERT_NEAR(double(image.at(x, y, 0)), radiance, 1e-4 * radiance)
+            << ior_ << ", " << interfaces << ": " << x << " " << y;
+      }
+    EXPECT_GT(shown, 50);
+  }
+
+  World world;
+
+ private:
+  float ior_;
+  int glass_, black_;
+};
+
+TEST(ReferenceSpecular, AFurnaceUnderWaterStaysOne) {
+  for (const float ior : {1.f, 1.33f, 3.f})
+    for (const int interfaces : {2, kAllInterfaces}) {
+      Furnace furnace(ior);
+      furnace.addPool();
+      furnace.expectEvery(1, interfaces, {0.3f, 2, 1.5f}, {0, 0, 0});
+      // Under water what lies beyond the critical angle is the ground, mirrored.
+      furnace.expectEvery(double(ior) * double(ior), interfaces, {0.1f, -0.4f, 0.3f}, {0, 0, -0.4f});
+    }
+}
+
+TEST(ReferenceSpecular, AFurnaceInGlassStaysOneOverAnyNumberOfInterfaces) {
+  for (const float ior : {1.33f, 1.5f}) {
+    Furnace furnace(ior);
+    furnace.addBall();
+    furnace.expectEvery(1, kAllInterfaces, {0.4f, 0.5f, 2.5f}, {0, 0, 0});
+    // Nearer to the middle than 1 / n: from there no light goes round within the ball for ever.
+    furnace.expectEvery(double(ior) * double(ior), kAllInterfaces, {0.5f, 0.1f, 0.2f}, {0.5f, 1, 0});
   }
 }
 
