@@ -92,17 +92,19 @@ BlockerSearch blocker_search(inout ShadowCursor cursor, VisibilityQuery q, int r
     float widest = 0.0;
     bool lit = true;
     bool umbra = true;
-    for (uint face = 0u; face < shadow_face_count(q.maps.faces); ++face) {
+    uint face = 0u;
+    do {  // the condition comes last: software renderers run a loop's body once more where it comes first
       ShadowKernel kernel;
-      if (!kernel_in_face(cursor, q, face, search.gap, least_kernel_width, true, kernel)) continue;
-      vec2 depths = kernel_depth_bounds(cursor, kernel);
-      ShadowKernel centres = kernel_centres(cursor, kernel);
-      vec2 thresholds = map_threshold_range(cursor.view, cursor.in_map, centres.low, centres.high);
-      lit = lit && thresholds.y <= depths.x;
-      umbra = umbra && depths.y < thresholds.x;
-      widest = max(widest, map_gap_bound(cursor.view, cursor.in_map, centres.low, centres.high,
-                                         shadow_metres(cursor.view, depths.x)));
-    }
+      if (kernel_in_face(cursor, q, face, search.gap, least_kernel_width, true, kernel)) {
+        vec2 depths = kernel_depth_bounds(cursor, kernel);
+        ShadowKernel centres = kernel_centres(cursor, kernel);
+        vec2 thresholds = map_threshold_range(cursor.view, cursor.in_map, centres.low, centres.high);
+        lit = lit && thresholds.y <= depths.x;
+        umbra = umbra && depths.y < thresholds.x;
+        widest = max(widest, map_gap_bound(cursor.view, cursor.in_map, centres.low, centres.high,
+                                           shadow_metres(cursor.view, depths.x)));
+      }
+    } while (++face < shadow_face_count(q.maps.faces));
     search.answer = lit ? search_lit : umbra ? search_umbra : search_partial;
     if (search.answer != search_partial || rounds == 0) return search;
     search.gap = clamp(widest, 0.0, search.gap);

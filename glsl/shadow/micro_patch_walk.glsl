@@ -82,21 +82,23 @@ int walk_patches(inout ShadowCursor cursor, VisibilityQuery q) {
   AlignedPatches aligned;
   bool lit = true;
   bool umbra = true;
-  for (uint face = 0u; face < faces; ++face) {
+  uint face = 0u;
+  do {  // conditions come last: software renderers run a loop's body once more where they come first
     bool all;
     bool some = blocker_box(cursor, q, face, gap, box, projection, aligned, all);
     lit = lit && !some;
     umbra = umbra && all;
-  }
+  } while (++face < faces);
   if (lit) return search_lit;
   if (umbra) return search_umbra;
-  for (uint face = 0u; face < faces; ++face) {
+  face = 0u;
+  do {
     bool some = true;
     bool all;
     // What a single view gave is still there.
     if (faces > 1u) some = blocker_box(cursor, q, face, gap, box, projection, aligned, all);
     if (some) walk_box(cursor, projection, aligned, box);
-  }
+  } while (++face < faces);
   return search_partial;
 }
 

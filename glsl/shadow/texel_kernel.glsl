@@ -9,17 +9,19 @@ float texel_coverage(vec2 low, vec2 high, ivec2 texel) {
   return covered.x * covered.y;
 }
 
-// The lit share of the kernel low..high in texels of the cursor's view, of positive area. What lies outside the map is
-// unoccluded.
+// The lit share of the kernel low..high in texels of the cursor's view, of positive area, which the map holds some of. What lies
+// outside the map is unoccluded. Loops end in their condition: software renderers run a body once more where it comes first.
 float texel_kernel_lit(ShadowCursor cursor, vec2 low, vec2 high) {
   ivec2 first = max(ivec2(floor(low)), ivec2(0));
   ivec2 last = min(ivec2(ceil(high)), ivec2(cursor.view.size)) - 1;
   float blocked = 0.0;
-  for (int y = first.y; y <= last.y; ++y) {
-    for (int x = first.x; x <= last.x; ++x) {
+  int y = first.y;
+  do {
+    int x = first.x;
+    do {
       if (shadow_texel(cursor, ivec2(x, y)).blocked) blocked += texel_coverage(low, high, ivec2(x, y));
-    }
-  }
+    } while (++x <= last.x);
+  } while (++y <= last.y);
   return clamp(1.0 - blocked / ((high.x - low.x) * (high.y - low.y)), 0.0, 1.0);
 }
 

@@ -19,17 +19,19 @@ float light_visibility(ShadowCursor cursor, VisibilityQuery q, ivec2 pixel) {
   last = min(last, ivec2(cursor.view.size) - 1);
   MapTest test = map_test(cursor);
   float blocked = 0.0;
-  for (int y = first.y; y <= last.y; ++y) {
+  int y = first.y;
+  do {
     float row = float(y);
     float along_row = test.plane.y * row + test.plane.z;
     float of_row = 0.0;
-    for (int x = first.x; x <= last.x; ++x) {
+    int x = first.x;
+    do {
       float column = float(x);
       float stored = texelFetch(shadow_depth, ivec3(x, y, cursor.layer), 0).r;
       bool counts = map_test_blocks(test, test.plane.x * column + along_row, stored);
       of_row += counts ? min(column + 1.0, high.x) - max(column, low.x) : 0.0;
-    }
+    } while (++x <= last.x);
     blocked += of_row * (min(row + 1.0, high.y) - max(row, low.y));
-  }
+  } while (++y <= last.y);
   return clamp(1.0 - blocked / (kernel_width * kernel_width), 0.0, 1.0);
 }
