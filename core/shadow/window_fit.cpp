@@ -39,12 +39,21 @@ Wedge pyramid(const MapEye& eye, const MapWindow& w) {
 /// All lines from receivers to points of the light: the hull of both.
 Wedge linesToLight(const MapEye& eye, const MapWindow& receivers) {
   Wedge wedge = pyramid(eye, receivers);
+  const std::array<float, 4> edges{receivers.low.x, receivers.high.x, receivers.low.y, receivers.high.y};
+  const float toLight = receivers.far - eye.spread.z;
   for (size_t i = 0; i < 4; ++i) {
     const float spread = i < 2 ? eye.spread.x : eye.spread.y;
     vec4& plane = wedge.planes[i];
-    // Perspective: spread (1 - (z - spread.z) / far) wider at depth z; orthographic: spread (far - z).
-    plane.z -= eye.perspective ? spread / receivers.far : spread;
-    plane.w += eye.perspective ? spread * (1 + eye.spread.z / receivers.far) : spread * receivers.far;
+    if (!eye.perspective) {  // spread (far - z) wider at depth z
+      plane.z -= spread;
+      plane.w += spread * receivers.far;
+      continue;
+    }
+    // No point of the light, up to spread.z before or behind its centre, lies farther outside of the edge.
+    const float outside = spread + std::abs(edges[i]) * eye.spread.z;
+    // Of that (far - z) / (far - spread.z) is left at depth z, or all where receivers lie among its points.
+    plane.z -= toLight > 0 ? outside / toLight : 0;
+    plane.w += toLight > 0 ? outside * (receivers.far / toLight) : outside;
   }
   return wedge;
 }

@@ -156,6 +156,15 @@ LIMN_FN MomentPart moment_part(float low, float high) {
   return part;
 }
 
+// --- Boxes in cells ---
+
+// Where cell `place` of `parts` begins along one axis of a box, 0 <= place <= parts: at a whole texel, except the first and the end
+// of the last, and nowhere outside of the box, in which few texels may leave cells without any.
+LIMN_FN float moment_cell_edge(float low, float high, int place, int parts) {
+  float edge = clamp(round(mix(low, high, float(place) / float(parts))), low, high);
+  return place == 0 ? low : place == parts ? high : edge;
+}
+
 LIMN_END
 
 #ifndef __cplusplus

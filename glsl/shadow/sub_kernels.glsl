@@ -47,7 +47,7 @@ struct KernelFamily {
   float nearest;  // stored in its kernels, quanta
   int size;       // texels per side of the map
   int layer;
-  bool beneath;  // a perspective map's origin lies beneath the tangent plane: only texels tell what blocks
+  bool beneath;  // map_from_beneath(): only texels tell what blocks
 };
 
 KernelFamily kernel_family(ShadowCursor cursor, VisibilityQuery q) {
@@ -72,7 +72,7 @@ KernelFamily kernel_family(ShadowCursor cursor, VisibilityQuery q) {
   f.nearest = 0.0;
   f.size = int(cursor.view.size);
   f.layer = int(cursor.layer);
-  f.beneath = cursor.view.projection == shadow_perspective && cursor.receiver.height >= 0.0;
+  f.beneath = map_from_beneath(cursor.view, cursor.in_map);
   return f;
 }
 

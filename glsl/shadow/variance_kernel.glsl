@@ -22,9 +22,10 @@ struct ShadowThresholds {
   vec3 plane;     // the receiver's tangent plane
   vec3 biased;    // the same, raised by the bias
   vec3 axis;      // where the light's axis has the receiver's depth
-  vec3 rise;      // of rays along the normal per metre of depth, where a perspective view's origin lies beneath `biased`: they
-                  // come up through it, and what blocks is deeper
-  float beneath;  // how far, metres; elsewhere -1 without a rise
+  vec3 rise;      // where the light's centre lies beneath `biased`: rays come up through it, and what blocks is deeper. In
+                  // perspective views what they rise along the normal per metre of depth, else metres of negated depth where
+                  // they do
+  float beneath;  // how far beneath it lies, metres, 0 in an orthographic view; elsewhere -1 without a rise
   float least;    // of all of these: the far plane's
   float deepest;  // of the plane's where the axis is nearer: nothing unoccluded lies deeper
   float near;     // metres
@@ -65,9 +66,11 @@ LIMN_FN ShadowThresholds shadow_thresholds(ShadowView view, ShadowReceiver recei
     float slope = min(n.z, -1e-6f);
     t.plane = (across - vec3(height, 0.0f, 0.0f)) / slope;
     t.biased = (across - vec3(receiver.height, 0.0f, 0.0f)) / slope;
-    t.rise = vec3(0.0f);
-    t.beneath = -1.0f;
     t.axis = (along - vec3(receiver.depth, 0.0f, 0.0f)) / a.z;
+    bool beneath = n.z >= 0.0f;
+    t.rise = beneath ? (across - vec3(receiver.height, 0.0f, 0.0f)) / max(n.z, 1e-6f) : vec3(0.0f);
+    t.beneath = beneath ? 0.0f : -1.0f;
+    if (beneath) t.biased = t.axis;
     t.least = -view.far;
     t.deepest = -deepest;
     t.gap = vec2(0.0f, -a.z);
@@ -106,7 +109,8 @@ LIMN_FN bool threshold_nearer(ShadowThresholds t, float depth, float value) {
 // Whether what is stored at a place, `depth` metres, blocks.
 LIMN_FN bool threshold_blocks(ShadowThresholds t, vec2 texel, float depth) {
   bool nearer = threshold_nearer(t, depth, max(threshold_value(t.biased, texel), threshold_value(t.axis, texel)));
-  return nearer && depth * threshold_value(t.rise, texel) > t.beneath;
+  float rise = threshold_value(t.rise, texel);
+  return nearer && (t.inverse ? depth * rise : depth + rise) > t.beneath;
 }
 
 // Metres along the light's axis from what lies at a place and `depth` to the receiver.

@@ -79,8 +79,7 @@ ivec2 cell_place(ivec2 parts, int i) {
 
 // The texels there, of a kernel from a to b: whole but for its own edges.
 vec2 cell_edge(vec2 a, vec2 b, ivec2 parts, ivec2 place) {
-  vec2 edge = mix(round(mix(a, b, vec2(place) / vec2(parts))), a, equal(place, ivec2(0)));
-  return mix(edge, b, equal(place, parts));
+  return vec2(moment_cell_edge(a.x, b.x, place.x, parts.x), moment_cell_edge(a.y, b.y, place.y, parts.y));
 }
 
 KernelBlockers cells_blockers(ShadowCursor cursor, Kernel k) {
@@ -94,18 +93,19 @@ KernelBlockers cells_blockers(ShadowCursor cursor, Kernel k) {
   do {
     int first = i;
     uint cut = 0u;  // cells that the horizon cuts, bit by bit
-    for (; i < min(first + 32, count); ++i) {
+    do {
       ivec2 place = cell_place(parts, i);
       vec2 low = cell_edge(a, b, parts, place);
       vec2 high = cell_edge(a, b, parts, place + 1);
-      if (any(lessThanEqual(high, low))) continue;
-      bool beyond;
-      MomentBlockers found = cell_blockers(cursor, k, low, high, beyond);
-      bool crossed = beyond && found.share < rest && (!k.whole || k.beneath);
-      cut |= crossed ? 1u << uint(i - first) : 0u;
-      if (found.share > 0.0 && !crossed)
-        add_blockers(blockers, k, low, high, found.share, shadow_metres(cursor.view, found.depth));
-    }
+      if (all(lessThan(low, high))) {
+        bool beyond;
+        MomentBlockers found = cell_blockers(cursor, k, low, high, beyond);
+        bool crossed = beyond && found.share < rest && (!k.whole || k.beneath);
+        cut |= crossed ? 1u << uint(i - first) : 0u;
+        if (found.share > 0.0 && !crossed)
+          add_blockers(blockers, k, low, high, found.share, shadow_metres(cursor.view, found.depth));
+      }
+    } while (++i < min(first + 32, count));
     for (; cut != 0u; cut &= cut - 1u) {
       ivec2 place = cell_place(parts, first + findLSB(cut));
       vec2 low = cell_edge(a, b, parts, place);

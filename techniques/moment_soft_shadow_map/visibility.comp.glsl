@@ -79,10 +79,9 @@ void add_quarters(inout KernelBlockers blockers, ShadowCursor cursor, Visibility
 ShadowKernel kernel_cell(vec2 a, vec2 b, ivec2 parts, int i) {
   int row = whole_quotient(i, parts.x);
   ivec2 part = ivec2(i - row * parts.x, row);
-  ShadowKernel cell = ShadowKernel(a, b, 1.0);
-  cell.low = mix(round(mix(a, b, vec2(part) / vec2(parts))), a, equal(part, ivec2(0)));
-  cell.high = mix(round(mix(a, b, vec2(part + 1) / vec2(parts))), b, equal(part + 1, parts));
-  return cell;
+  vec2 low = vec2(moment_cell_edge(a.x, b.x, part.x, parts.x), moment_cell_edge(a.y, b.y, part.y, parts.y));
+  vec2 high = vec2(moment_cell_edge(a.x, b.x, part.x + 1, parts.x), moment_cell_edge(a.y, b.y, part.y + 1, parts.y));
+  return ShadowKernel(low, high, 1.0);
 }
 
 // The kernel at `gap` in cells x cells parts, or as many as sums of the table stay exact in. What lies outside the map is
@@ -103,17 +102,18 @@ KernelBlockers cells_blockers(ShadowCursor cursor, VisibilityQuery q, ShadowKern
     // Cells that have a bit each: few pixels need texels, so they take them together.
     int first = i;
     uint cut = 0u;  // those that the horizon cuts
-    for (; i < min(first + 32, count); ++i) {
+    do {  // conditions come last: software renderers run a loop's body once more where they come first
       ShadowKernel cell = kernel_cell(a, b, parts, i);
-      if (any(lessThanEqual(cell.high, cell.low))) continue;
-      bool beyond;
-      MomentBlockers found = cell_blockers(cursor, cell, beyond);
-      bool crossed = beyond && found.share < rest && horizon;
-      cut |= crossed ? 1u << uint(i - first) : 0u;
-      if (found.share > 0.0 && !crossed)
-        add_blockers(blockers, cursor, q, gap, use, cell.low, cell.high, found.share,
-                     shadow_metres(cursor.view, found.depth));
-    }
+      if (all(lessThan(cell.low, cell.high))) {
+        bool beyond;
+        MomentBlockers found = cell_blockers(cursor, cell, beyond);
+        bool crossed = beyond && found.share < rest && horizon;
+        cut |= crossed ? 1u << uint(i - first) : 0u;
+        if (found.share > 0.0 && !crossed)
+          add_blockers(blockers, cursor, q, gap, use, cell.low, cell.high, found.share,
+                       shadow_metres(cursor.view, found.depth));
+      }
+    } while (++i < min(first + 32, count));
     for (; cut != 0u; cut &= cut - 1u)
       add_quarters(blockers, cursor, q, gap, use, kernel_cell(a, b, parts, first + findLSB(cut)));
   } while (i < count);

@@ -217,5 +217,23 @@ TEST(MomentShadow, PartsCoverTheirBoxes) {
   }
 }
 
+TEST(MomentShadow, CellsCoverTheirBoxesAndNothingElse) {
+  std::mt19937 random(6);
+  std::uniform_real_distribution<float> unit(0, 1);
+  for (int i = 0; i < 5000; ++i) {
+    const float lo = 20 * unit(random), hi = lo + (i % 2 == 0 ? 1.5f : 20.f) * unit(random);
+    const int parts = 1 + static_cast<int>(random() % 8);
+    float covered = 0;
+    for (int k = 0; k < parts; ++k) {
+      const float begin = moment_cell_edge(lo, hi, k, parts), end = moment_cell_edge(lo, hi, k + 1, parts);
+      ASSERT_TRUE(lo <= begin && begin <= end && end <= hi) << lo << " " << hi << " cell " << k;
+      // Whole texels, so that sums of the table are exact, but for the ends.
+      ASSERT_TRUE(begin == lo || begin == hi || begin == std::floor(begin));
+      covered += end - begin;
+    }
+    ASSERT_NEAR(covered, hi - lo, 1e-5f);
+  }
+}
+
 }  // namespace
 }  // namespace limn::glsl

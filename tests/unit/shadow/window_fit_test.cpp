@@ -239,6 +239,36 @@ TEST_P(WindowFit, ScalesWithTheScene) {
 
 INSTANTIATE_TEST_SUITE_P(Lights, WindowFit, ::testing::Range(0, 4));
 
+/// The square that stands for a spot faces the receiver: seen from one aside of the axis, a part of it lies
+/// behind the spot, and what blocks there lies farther out in the map than beside it.
+TEST(FitWindow, HoldsWhatBlocksBesideALightThatFacesTheReceiver) {
+  const vec3 receiver(-8, 0, 4);
+  for (const float size : {0.25f, 0.5f, 2.f, 6.f}) {
+    const vec3 point =
+        size * glm::normalize(vec3(-1, 0, -2));  // of the light, across the way to the receiver
+    const float along = (0.2f - point.z) / (receiver.z - point.z);
+    const vec3 blocker = point + along * (receiver - point);
+    scene::Scene scene;
+    scene::Pose pose;
+    addMesh(scene, floorPrimitive(0.01f, addMaterial(scene)));
+    std::vector<scene::Bounds> boxes;
+    for (const vec3& place : {receiver, blocker}) {
+      addInstance(scene, pose, 0, glm::translate(glm::mat4(1), place));
+      boxes.push_back({place - vec3(0.01f, 0, 0.01f), place + vec3(0.01f, 0, 0.01f)});
+    }
+    VisibleScene visible(scene);
+    visible.update(pose, boxes, scene::lookAt(receiver + vec3(0, 0.2f, 0.2f), receiver, 0.5f), 1);
+    const MapEye eye{vec3(0), {{1, 0, 0}, {0, -1, 0}, {0, 0, 1}}, true, vec3(size)};
+    MapWindow window;
+    std::vector<vec3> receivers;
+    ASSERT_TRUE(
+        fitWindow(eye, visible, glsl::no_instance, {vec2(-1e3f), vec2(1e3f), 0.01f, 20}, window, receivers));
+    EXPECT_LE(window.low.x, blocker.x / blocker.z) << size;
+    EXPECT_LE(window.near, blocker.z) << size;
+    EXPECT_GE(window.high.x, receiver.x / receiver.z);
+  }
+}
+
 /// A half cube, a cube of a point light, and one of a rectangle that shines both ways.
 glsl::Light lightOfFaces(int kind) {
   glsl::Light light = rectangleLight({-0.4f, 3.6f, 0.3f}, {0.05f, -1, 0.03f}, 0.8f, 0.5f);
