@@ -6,6 +6,7 @@
 #include <cmath>
 #include <limits>
 
+#include "core/scene/light_texture.h"
 #include "glsl/light/light_view.glsl"
 #include "glsl/light/unshadowed_light.glsl"
 #include "glsl/numeric/sampling.glsl"
@@ -134,7 +135,10 @@ void lightLeaves(const SceneElements& elements, std::span<const glsl::Light> lig
                          .seed = slot,
                          .instance = elements.forest().groups()[i / 4].object};
     LightAtPlace sum;
-    for (const glsl::Light& light : lights) addLight(light, place, occlusion, rays, sum);
+    for (glsl::Light light : lights) {
+      light.emission *= scene::lightTextureAt(elements.scene(), light, leaf.position);
+      addLight(light, place, occlusion, rays, sum);
+    }
     for (glsl::IncidentLight& incident : sum.incident)
       incident.direction = space.direction(incident.direction);
     solver.light(slot, sum.irradiance, sum.incident);

@@ -28,14 +28,14 @@ struct LightAtPlace {
   std::vector<glsl::IncidentLight> incident;
 };
 
-/// Adds the light of a light: exact where nothing hides it, attenuated by the medium from the light's centre
-/// on, and hidden by `rays` rays or more to an extended light, to strata of its area. Light below the horizon
-/// does not arrive, nor does that of the instance that the place is on.
+/// Adds the light of a light, whose texture is left out: exact where nothing hides it, attenuated by the
+/// medium from the light's centre on, and hidden by `rays` rays or more to an extended light, to strata of
+/// its area. Light below the horizon does not arrive, nor does that of the instance that the place is on.
 LIMN_API void addLight(const glsl::Light& light, const LitPlace& place, const Occlusion& occlusion, int rays,
                        LightAtPlace& sum);
 
-/// Sets the light of `lights` at all leaves of a solution for these elements. Uses all cores; the result does
-/// not depend on their number.
+/// Sets the light of `lights`, as their textures colour it, at all leaves of a solution for these elements.
+/// Uses all cores; the result does not depend on their number.
 LIMN_API void lightLeaves(const SceneElements& elements, std::span<const glsl::Light> lights,
                           const Occlusion& occlusion, int rays, SampleSolver& solver);
 

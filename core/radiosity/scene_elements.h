@@ -59,6 +59,8 @@ class LIMN_API SceneElements {
   /// instance is deformed.
   void update(const scene::Pose& pose);
 
+  /// Returns the scene that the elements were made of.
+  const scene::Scene& scene() const { return scene_; }
   const ElementSpace& space() const { return space_; }
   const Surfels& surfels() const { return surfels_; }
   const Forest& forest() const { return forest_; }

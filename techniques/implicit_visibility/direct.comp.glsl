@@ -1,6 +1,7 @@
 // What leaves reflect of the lights and of the environment, and so send on. With GLOSSY a thread for each direction, and
-// lights alone. MEDIUM 1: light of lights is attenuated on its way to the leaf. LIGHTS_FIRST, LIGHTS_LAST: no lights were added
-// before these, or will be after them.
+// lights alone. LIGHT_TEXTURES: see light_texture.glsl. MEDIUM 1: light of lights is attenuated on its way to the leaf.
+// LIGHTS_FIRST, LIGHTS_LAST: no lights were added before these, or will be after them.
+#include "glsl/light/light_texture.glsl"
 #include "glsl/light/unshadowed_light.glsl"
 #include "glsl/media/light_transmittance.glsl"
 #include "techniques/implicit_visibility/elements.glsl"
@@ -53,7 +54,8 @@ void main() {
 #if LIGHTS
     for (uint l = 0u; l < light_count; ++l) {
       if (light_is_instance(lights[indices[l]], groups[slot / 4u].object)) continue;
-      vec3 lit = seen[l * slots + slot] * unshadowed_light(lights[indices[l]], surface, leaf.position.xyz, n, n, view);
+      vec3 lit = seen[l * slots + slot] * unshadowed_light(lights[indices[l]], surface, leaf.position.xyz, n, n, view) *
+                 light_texture(lights[indices[l]], leaf.position.xyz);
 #if MEDIUM
       lit *= light_transmittance(lights[indices[l]], leaf.position.xyz);
 #endif

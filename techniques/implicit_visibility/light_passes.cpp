@@ -9,6 +9,7 @@
 
 #include "core/gpu_scene/gpu_medium.h"
 #include "core/gpu_scene/gpu_scene.h"
+#include "core/gpu_scene/light_textures.h"
 #include "core/radiosity/illumination.h"
 #include "core/shading_maps/shading_maps.h"
 #include "core/technique/light_batch.h"
@@ -121,11 +122,15 @@ LightPasses::Sent LightPasses::addDirectLight(const PassRequest& r, std::span<co
   if (glossy || seen)
     pass.read(r.inputs.service<shading_maps::ShadingMapService>().ltcTable(), Access::sampled, "ltc_table",
               "glossy light of rectangles");
-  std::map<std::string, std::string> defines{{"LIGHTS", seen ? "1" : "0"},
-                                             {"LIGHTS_FIRST", first ? "1" : "0"},
-                                             {"LIGHTS_LAST", last ? "1" : "0"},
-                                             {"ENVIRONMENT", sky ? "1" : "0"},
-                                             {"MEDIUM", "0"}};
+  std::map<std::string, std::string> defines{
+      {"LIGHTS", seen ? "1" : "0"},      {"LIGHTS_FIRST", first ? "1" : "0"},
+      {"LIGHTS_LAST", last ? "1" : "0"}, {"ENVIRONMENT", sky ? "1" : "0"},
+      {"LIGHT_TEXTURES", "0"},           {"MEDIUM", "0"}};
+  if (seen) {
+    const scene::LightTextureInput textures(r.inputs.handles);
+    textures.define(defines);
+    textures.declare(pass);
+  }
   if (seen && r.inputs.scene.medium.present()) {
     const scene::MediumInput medium(r.inputs.handles);
     defines["MEDIUM"] = "1";

@@ -1,6 +1,7 @@
 // Which light implicit visibility reflects, and how much of it: lights that are chosen, skies, suns, media.
 #include <cmath>
 #include <cstdio>
+#include <vector>
 
 #include "core/shading/environment_decomposition.h"
 #include "tests/gpu/ball_scene.h"
@@ -128,6 +129,32 @@ TEST_F(ImplicitVisibilityLightTest, AMediumTakesOfLightFromTheLampToTheWall) {
     scene::Scene fog = test::foggyBall();
     test::fillWithFog(fog, grid);
     EXPECT_NEAR(seen(fog) / clear, std::exp(-2.0), 0.003) << grid;
+  }
+}
+
+/// A spot that shines through glass of one colour brings that colour on over surfaces, sent evenly and into
+/// bins.
+TEST_F(ImplicitVisibilityLightTest, TheTextureOfASpotColoursTheBounce) {
+  constexpr size_t kTexels = size_t{scene::LightTexture::side} * scene::LightTexture::side;
+  const glm::vec3 colour(1, 0.25f, 0);
+  scene::Scene plain = corner();
+  plain.lights[0] = test::lamp(glsl::light_spot, 10);
+  scene::Scene stained = plain;
+  stained.lights[0].texture = 0;
+  stained.lightTextures.push_back({std::vector<glm::vec3>(kTexels, colour)});
+  for (const char* bins : {"0", "4"}) {
+    const auto seen = [&](const scene::Scene& scene) {
+      render::Renderer renderer(device(), scene);
+      const render::TechniqueUse use =
+          technique("implicit_visibility", {{"bins", "8"}, {"longest_edge", "0.1"}, {"glossy_bins", bins}});
+      return picture(renderer, settings(64, 48, Term::indirect, {use}), camera());
+    };
+    const Image white = seen(plain), coloured = seen(stained);
+    EXPECT_GT(mean(white), 1e-3) << bins;
+    for (int y = 0; y < 48; ++y)
+      for (int x = 0; x < 64; ++x)
+        for (int c = 0; c < 3; ++c)
+          EXPECT_NEAR(coloured.at(x, y, c), colour[c] * white.at(x, y, c), 1e-6) << bins;
   }
 }
 

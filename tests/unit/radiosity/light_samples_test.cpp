@@ -5,7 +5,9 @@
 
 #include <algorithm>
 #include <cmath>
+#include <vector>
 
+#include "core/scene/light_texture.h"
 #include "glsl/light/unshadowed_light.glsl"
 #include "tests/support/scene_nodes.h"
 
@@ -167,6 +169,42 @@ TEST(LightSamplesTest, AMediumTakesOfLightOnItsWay) {
             << c;
       }
     }
+}
+
+/// What elements of a floor send on of a spot that shines through a texture.
+TEST(LightSamplesTest, TheTextureOfASpotColoursItsLight) {
+  scene::Scene scene;
+  test::show(scene,
+             test::quad({0, 0, 0}, {2, 0, 0}, {0, 0, -2}, test::addMaterial(scene, test::lambertian(0.5f))));
+  test::shine(scene, test::lamp(glsl::light_spot, 10), {0, 1, 0});
+  constexpr int side = scene::LightTexture::side;
+  scene::LightTexture texture;
+  for (int i = 0; i < side * side; ++i)
+    texture.texels.emplace_back((float(i % side) + 0.5f) / side, (float(i / side) + 0.5f) / side, 1);
+  scene.lightTextures.push_back(texture);
+  const auto lit = [&](int of) {
+    scene.lights[0].texture = of;
+    const scene::Pose pose = scene::evaluate(scene, 0);
+    const SceneElements elements(scene, pose, 0.2f, 1u << 20);
+    SampleSolver solver(elements.surfels(), elements.forest(), elements.space(), elements.materials(), {});
+    lightLeaves(elements, pose.lights, Curtain(-100), 16, solver);
+    solver.reflect();
+    std::vector<glm::vec3> sent;
+    for (const uint32_t leaf : elements.forest().leafOf())
+      sent.push_back(solver.unshot(leaf, elements.space().direction({0, 1, 0})));
+    return sent;
+  };
+  const std::vector<glm::vec3> white = lit(scene::kNone), coloured = lit(0);
+  const scene::Pose pose = scene::evaluate(scene, 0);
+  const SceneElements elements(scene, pose, 0.2f, 1u << 20);
+  int bright = 0;
+  for (size_t i = 0; i < white.size(); ++i) {
+    const glm::vec3 place(elements.leaves()[elements.forest().leafOf()[i]].position);
+    const glm::vec3 wanted = white[i] * scene::lightTextureAt(scene, pose.lights[0], place);
+    for (int c = 0; c < 3; ++c) EXPECT_NEAR(coloured[i][c], wanted[c], 1e-5f * white[i][c]);
+    bright += white[i].x > 0 && std::abs(coloured[i].x - coloured[i].y) > 0.1f * white[i].x;
+  }
+  EXPECT_GT(bright, 10) << "colours differ from place to place";
 }
 
 TEST(LightSamplesTest, AFlatLightDoesNotLightItself) {
