@@ -55,8 +55,8 @@ std::vector<glm::vec4> environmentBins(const scene::Environment& environment, co
   const int side =
       std::max(static_cast<int>(std::ceil(2 * std::sqrt(pixels / double(size_t{6} * n * n)))), 2);
   const scene::EnvironmentLight light(environment);
-  std::vector<glm::vec4> bins;
-  for (uint32_t bin = 0; bin < 6 * n * n; ++bin) {
+  std::vector<glm::vec4> bins(size_t{6} * n * n);
+  tbb::parallel_for(0u, 6 * n * n, [&](uint32_t bin) {
     glm::vec3 sum(0);
     float weights = 0;
     for (int s = 0; s < side * side; ++s) {
@@ -68,8 +68,8 @@ std::vector<glm::vec4> environmentBins(const scene::Environment& environment, co
       sum += weight * light.radiance(glm::normalize(space.worldDirection(ray)));
       weights += weight;
     }
-    bins.emplace_back(sum / weights, 0);
-  }
+    bins[bin] = glm::vec4(sum / weights, 0);
+  });
   return bins;
 }
 

@@ -19,7 +19,7 @@ namespace limn::radiosity {
 LIMN_API std::vector<glm::vec4> binTable(int resolution);
 
 /// Returns the environment's mean radiance over each bin (w is 0), W/(sr m^2), of bins in the axes of
-/// `space`.
+/// `space`. Uses all cores; the result does not depend on their number.
 LIMN_API std::vector<glm::vec4> environmentBins(const scene::Environment& environment,
                                                 const ElementSpace& space, int resolution);
 
