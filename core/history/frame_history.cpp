@@ -7,7 +7,6 @@
 #include <cstring>
 #include <optional>
 #include <string>
-#include <utility>
 
 #include "core/base/error.h"
 #include "glsl/history/history_frame.glsl"
@@ -89,8 +88,9 @@ void FrameHistoryService::begin() {
 }
 
 bool FrameHistoryService::update(frame::FrameGraph&, const scene::Pose& pose) {
-  if (std::vector<glm::mat4> places = placesOf(pose); places != places_) {
-    places_ = std::move(places);
+  if (kept_.empty()) return false;
+  if (!std::ranges::equal(pose.instances, places_, {}, &scene::DrawInstance::objectToWorld)) {
+    places_ = placesOf(pose);
     placed_ = scene_.frame().frame_index;
   }
   for (const std::unique_ptr<Kept>& kept : kept_) kept->find(scene_.frame(), placed_);

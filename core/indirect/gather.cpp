@@ -199,11 +199,14 @@ void Gather::addShadePass(ShadePass shade) {
   shade.program.defines["GATHER_EDGES"] = "0";
   shade.program.defines["ACCUMULATE"] = accumulate ? "1" : "0";
   const auto program = pass.program(shade.program);
-  pass.execute([program, uniforms = shadingUniforms(shade), block = settings_.block,
+  // Without a blur a pixel keeps its part of the lights, and gets another wherever the camera moves.
+  const bool apart = settings_.history > 1 && !blurred_;
+  pass.execute([program, uniforms = shadingUniforms(shade), block = settings_.block, apart,
                 size = inputs_.size](frame::PassContext& context) {
     gpu::Program& kernel = context.use(program);
     uniforms(kernel);
     kernel.set("block", static_cast<unsigned>(block));
+    kernel.set("part_of_all", apart ? 1 / static_cast<float>(block * block) : 1.f);
     const glm::ivec2 part = (size + block - 1) / block;
     context.dispatch(part.x, part.y, block * block, 2 * kGroup, 2 * kGroup);
   });

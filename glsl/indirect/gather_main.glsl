@@ -76,6 +76,7 @@ uniform uint batch_first;  // virtual lights that this pass may use
 uniform uint batch_count;
 #if !GATHER_EDGES
 uniform uint block;        // pixels
+uniform float part_of_all;  // 1, or with a history the part of the lights that a pixel has where no blur brings the others
 #else
 uniform sampler2DArray blurred;  // along both axes, along rows alone, along columns alone
 uniform sampler2DArray rows;
@@ -321,6 +322,7 @@ void store_part(ivec3 at, vec4 value) {
 
 void store(GatherPixel p, Gathered sum) {
 #if GATHER_EDGES
+  const float part_of_all = 1.0;
   float scale = inverse_pi;
 #if GATHER_FALLING
   sum.diffuse += sum.residual;
@@ -328,9 +330,9 @@ void store(GatherPixel p, Gathered sum) {
 #else
   if (!p.inside) return;
   // For the lights that other sub-buffers have; a light of the flux F sends F / pi along its normal.
-  float scale = float(block * block) * inverse_pi;
+  float scale = part_of_all * (float(block * block) * inverse_pi);
 #endif
-  float weight = p.covered ? 1.0 : 0.0;
+  float weight = p.covered ? part_of_all : 0.0;
 #if LAMBERTIAN
   float diffuse = scale * inverse_pi;
 #else
