@@ -1,10 +1,32 @@
 // Reflectance of smooth interfaces, exact, unpolarised. Light comes from air; eta, k: indices of refraction and absorption
-// behind the interface, eta - i k.
+// behind the interface, eta - i k. With FRESNEL_SCHLICK defined, fresnel() and its means are Schlick's approximation instead.
 #ifndef LIMN_FRESNEL_GLSL
 #define LIMN_FRESNEL_GLSL
 #include "glsl/numeric/exp_log.glsl"
 #include "glsl/numeric/language.glsl"
 LIMN_BEGIN
+
+// Schlick's approximation (1994) from the exact value at normal incidence. Off by 0.036 for an index of 1.5, 0.26 for 5 and 0.12
+// for aluminium, at the most; an index of 1 reflects as well.
+LIMN_FN float schlick_fresnel(float cosine, float eta, float k) {
+  float k2 = k * k;
+  float facing = ((eta - 1.0f) * (eta - 1.0f) + k2) / ((eta + 1.0f) * (eta + 1.0f) + k2);
+  float rest = 1.0f - clamp(cosine, 0.0f, 1.0f);
+  float rest2 = rest * rest;
+  return facing + (1.0f - facing) * (rest2 * rest2 * rest);
+}
+
+// Its mean over light from all sides, int F cos / pi.
+LIMN_FN float schlick_mean_reflectance(float eta, float k) {
+  float facing = schlick_fresnel(1.0f, eta, k);
+  return facing + (1.0f - facing) / 21.0f;
+}
+
+#ifdef FRESNEL_SCHLICK
+LIMN_FN float fresnel(float cosine, float eta, float k) { return schlick_fresnel(cosine, eta, k); }
+LIMN_FN float dielectric_mean_reflectance(float eta) { return schlick_mean_reflectance(max(eta, 1.0f), 0.0f); }
+LIMN_FN float mean_reflectance(float eta, float k) { return schlick_mean_reflectance(eta, k); }
+#else
 
 // cosine: of the angle of incidence; below 0 it counts as 0. With (a - i b)^2 = (eta - i k)^2 - sin^2:
 //   Rs = |cos - (a - i b)|^2 / |cos + (a - i b)|^2,   Rp / Rs = |a - i b - sin tan|^2 / |a - i b + sin tan|^2.
@@ -27,9 +49,6 @@ LIMN_FN float fresnel(float cosine, float eta, float k) {
   float p_over_s = (near * near + b2 * c * c) / max(far * far + b2 * c * c, 1e-30f);
   return min(0.5f * s * (1.0f + p_over_s), 1.0f);
 }
-LIMN_FN vec3 fresnel(float cosine, vec3 eta, vec3 k) {
-  return vec3(fresnel(cosine, eta.x, k.x), fresnel(cosine, eta.y, k.y), fresnel(cosine, eta.z, k.z));
-}
 
 // Mean reflectance of light from all sides, int F cos / pi, of a dielectric with eta >= 1 (Walsh; Duntley 1942, The Optical
 // Properties of Diffusing Materials). Its terms cancel near 1, where a series in eta - 1 is taken. Within 1e-5.
@@ -47,9 +66,6 @@ LIMN_FN float dielectric_mean_reflectance(float eta) {
          2.0f * n * n2 * (n2 + 2.0f * n - 1.0f) / (sum * sum * difference) +
          8.0f * n4 * (n4 + 1.0f) / (sum * sum * sum * difference * difference) * log_one_plus(rest);
 }
-LIMN_FN vec3 dielectric_mean_reflectance(vec3 eta) {
-  return vec3(dielectric_mean_reflectance(eta.x), dielectric_mean_reflectance(eta.y), dielectric_mean_reflectance(eta.z));
-}
 
 // The same of any interface. That of a dielectric with eta < 1 follows from its other side: what is passed, times n^2, is the same
 // both ways. Where there is absorption it is the rule of Gauss and Legendre with three nodes over cos^2, within 0.012, but up to
@@ -59,6 +75,14 @@ LIMN_FN float mean_reflectance(float eta, float k) {
   if (k == 0.0f) return dielectric_mean_reflectance(eta);
   return (5.0f * fresnel(0.33571069f, eta, k) + 8.0f * fresnel(0.70710678f, eta, k) +
           5.0f * fresnel(0.94196515f, eta, k)) / 18.0f;
+}
+#endif
+
+LIMN_FN vec3 fresnel(float cosine, vec3 eta, vec3 k) {
+  return vec3(fresnel(cosine, eta.x, k.x), fresnel(cosine, eta.y, k.y), fresnel(cosine, eta.z, k.z));
+}
+LIMN_FN vec3 dielectric_mean_reflectance(vec3 eta) {
+  return vec3(dielectric_mean_reflectance(eta.x), dielectric_mean_reflectance(eta.y), dielectric_mean_reflectance(eta.z));
 }
 LIMN_FN vec3 mean_reflectance(vec3 eta, vec3 k) {
   return vec3(mean_reflectance(eta.x, k.x), mean_reflectance(eta.y, k.y), mean_reflectance(eta.z, k.z));

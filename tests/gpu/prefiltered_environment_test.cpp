@@ -159,6 +159,51 @@ TEST_F(PrefilteredEnvironmentTest, EveryModelHasItsLightOfASmoothEnvironment) {
   EXPECT_LT(*std::ranges::min_element(along), -0.02);
 }
 
+/// Schlick's approximation is linear in the reflectance head-on, and so are pictures by it: each lies between
+/// those of a mirror and of an index of 1. Fresnel's equations are not.
+TEST_F(PrefilteredEnvironmentTest, SchlicksReflectanceIsLinearInThatHeadOn) {
+  const vec3 bright = glm::normalize(vec3(1));
+  const scene::Environment sky =
+      test::environmentOf(64, [&](vec3 d) { return vec3(1 + 0.8f * glm::dot(d, bright)); });
+  for (const uint32_t kind : {glsl::model_coated, glsl::model_torrance_sparrow, glsl::model_ward}) {
+    const auto with = [&](float eta, float k, const char* fresnel) {
+      glsl::MaterialModel m = model(kind);
+      m.eta = vec3(eta);
+      m.k = vec3(k);
+      return drawn(row({m}, sky), {{"fresnel", fresnel}});
+    };
+    const Image none = with(1, 0, "schlick"), all = with(1e-3f, 1000, "schlick");
+    for (const auto& [eta, k] : {std::pair(1.5f, 0.f), std::pair(5.f, 0.f), std::pair(1.37f, 7.62f)}) {
+      const float headOn = ((eta - 1) * (eta - 1) + k * k) / ((eta + 1) * (eta + 1) + k * k);
+      Image expected = all;
+      for (size_t i = 0; i < expected.data().size(); ++i)
+        expected.data()[i] = headOn * all.data()[i] + (1 - headOn) * none.data()[i];
+      const double schlick = rmse(with(eta, k, "schlick"), expected);
+      const double exact = rmse(with(eta, k, "exact"), expected);
+      RecordProperty(std::to_string(kind) + " of " + std::to_string(eta),
+                     std::to_string(schlick) + " " + std::to_string(exact));
+      EXPECT_LT(schlick, 1e-5) << kind << ' ' << eta;
+      EXPECT_GT(exact, 3e-3) << kind << ' ' << eta;
+    }
+  }
+}
+
+/// A coat on a white base reflects all of uniform light: by either reflectance, what it mirrors is what the
+/// base lacks.
+TEST_F(PrefilteredEnvironmentTest, PhysicalCoatsKeepTheirEnergyByEitherReflectance) {
+  glsl::MaterialModel coat = model(glsl::model_coated);
+  coat.eta = vec3(1.5f);
+  coat.k = vec3(0);
+  coat.kd = vec3(1);
+  coat.options = glsl::model_option_physical;
+  const auto uniform = [](const glsl::MaterialModel& m) {
+    return row({m}, test::environmentOf(64, [](vec3) { return vec3(1); }));
+  };
+  const Image white = drawn(uniform(lambert()));
+  for (const char* fresnel : {"exact", "schlick"})
+    EXPECT_LT(rmse(drawn(uniform(coat), {{"fresnel", fresnel}}), white), 2e-3) << fresnel;
+}
+
 /// A GGX lobe of a material that nothing shows has its map all the same, and changes no bit.
 TEST_F(PrefilteredEnvironmentTest, MapsThatNoSurfaceLooksUpAreLeftOut) {
   glsl::MaterialModel phong = model(glsl::model_phong), coat = model(glsl::model_coated);

@@ -87,6 +87,26 @@ TEST(Fresnel, SchlicksDeviationIsTheKnownOne) {
   EXPECT_NEAR(deviation(1.37f, 7.62f), 0.12, 0.005);
 }
 
+/// Values and their mean, against double precision.
+TEST(Fresnel, SchlicksIsExactHeadOnAndAllAtGrazingAngles) {
+  for (const Interface& i : kInterfaces) {
+    const double headOn = exactFresnel(1, i.eta, i.k);
+    EXPECT_EQ(schlick_fresnel(0, i.eta, i.k), 1) << i.eta << ' ' << i.k;
+    EXPECT_EQ(schlick_fresnel(-0.5f, i.eta, i.k), 1) << i.eta << ' ' << i.k;
+    double sum = 0;
+    constexpr int n = 20000;
+    for (int j = 0; j < n; ++j) {
+      const double c = (j + 0.5) / n, expected = headOn + (1 - headOn) * std::pow(1 - c, 5);
+      sum += expected * 2 * c / n;
+      if (j % 1000 == 0) {
+        EXPECT_NEAR(schlick_fresnel(static_cast<float>(c), i.eta, i.k), expected, 2e-6)
+            << i.eta << ' ' << i.k << ' ' << c;
+      }
+    }
+    EXPECT_NEAR(schlick_mean_reflectance(i.eta, i.k), sum, 2e-6) << i.eta << ' ' << i.k;
+  }
+}
+
 /// int F cos / pi by quadrature over cos = t^2, which resolves the rise at grazing angles.
 double meanByQuadrature(double eta, double k) {
   constexpr int n = 20000;
