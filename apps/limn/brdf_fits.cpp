@@ -38,6 +38,7 @@ constexpr std::array kKinds{
     Kind{"tables", Factorisation::tables, 64, "dfg baked into two tables of two dimensions"},
     Kind{"pqp", Factorisation::pqp, 64, "exp(p(n.l) + q(n.h) + p(n.v))"},
     Kind{"pqp_disc", Factorisation::pqp_disc, 32, "the same over whole directions"},
+    Kind{"dfg_disc", Factorisation::dfg_disc, 32, "dfg with D and G over whole directions"},
     Kind{"svd", Factorisation::svd, 24, "sum of products over half vector and difference"},
     Kind{"trilinear", Factorisation::trilinear, 32,
          "one table over half vector and difference, half the texels in the others"},
@@ -81,19 +82,24 @@ brdf::FitSettings settingsOf(const Kind& kind, const BrdfFitsArguments& options)
 }
 
 /// What is asked for: one fit, or all kinds, with the coordinates and terms that they are compared with.
-/// Throws UsageError for more texels than svd takes, where it is the one fit; among all kinds it has as many
-/// as it takes.
+/// Throws UsageError for more terms than a kind takes, and more texels than svd does, where it is the one
+/// fit; among all kinds each has as many as it takes.
 std::vector<brdf::FitSettings> settingsOf(const BrdfFitsArguments& options) {
   if (!options.kind.empty()) {
     const Kind& kind = rowNamed(kKinds, options.kind, "--fit");
     if (kind.factorisation == Factorisation::svd && options.texels > brdf::kMostSvdTexels)
       throw UsageError(fmt::format("--texels {} is not accepted with --fit svd, which takes 2 to {}",
                                    options.texels, brdf::kMostSvdTexels));
+    const int most = brdf::mostTerms(kind.factorisation);
+    if (options.terms > most)
+      throw UsageError(fmt::format("--terms {} is not accepted with --fit {}, which takes {}", options.terms,
+                                   options.kind, most > 1 ? fmt::format("1 to {}", most) : "1"));
     return {settingsOf(kind, options)};
   }
   std::vector<brdf::FitSettings> all;
   for (const Kind& kind : kKinds) {
     all.push_back(settingsOf(kind, options));
+    all.back().terms = std::min(all.back().terms, brdf::mostTerms(kind.factorisation));
     if (kind.factorisation == Factorisation::svd)
       all.back().texels = std::min(all.back().texels, brdf::kMostSvdTexels);
     if (kind.factorisation == Factorisation::pqp_disc && !options.noWarp) {
@@ -213,11 +219,14 @@ std::function<int()> addBrdfFit(CLI::App& command) {
       .add_option("--texels", options->texels,
                   fmt::format("Texels along an axis of a factor; svd has {} at most", brdf::kMostSvdTexels))
       ->check(CLI::Range(2, 512));
-  command.add_option("--terms", options->terms, "Products that svd takes the sum of")
+  command
+      .add_option("--terms", options->terms,
+                  "Products that the fit is the sum of: at most 16 of svd, 2 of dfg, pqp and those over "
+                  "directions, 1 of the others")
       ->check(CLI::Range(1, 16));
   command.add_flag("--no-floor", options->noFloor, "Fit the product alone, without a diffuse part beside it");
   command.add_flag("--no-refine", options->noRefine, "Keep the least squares of the logarithms");
-  command.add_flag("--no-warp", options->noWarp, "Coordinates of pqp_disc and tables as published");
+  command.add_flag("--no-warp", options->noWarp, "Coordinates of pqp_disc, dfg_disc and tables as published");
   command.add_option("--format", options->format, "Format of the tables: half or float32")
       ->capture_default_str();
   command.add_flag("--json", options->json, "Print JSON instead of a table");

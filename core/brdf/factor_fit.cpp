@@ -19,8 +19,10 @@ void check(const FitSettings& settings) {
   if (settings.texels < 2 || settings.texels > 512)
     throw UsageError(
         fmt::format("a fit has {} texels along an axis: 2 to 512 are possible", settings.texels));
-  if (settings.terms < 1 || settings.terms > 16)
-    throw UsageError(fmt::format("a fit has {} terms: 1 to 16 are possible", settings.terms));
+  const int most = mostTerms(settings.factorisation);
+  if (settings.terms < 1 || settings.terms > most)
+    throw UsageError(fmt::format("a fit has {} terms: {} possible", settings.terms,
+                                 most > 1 ? fmt::format("1 to {} are", most) : "1 is"));
   if (settings.samples < 100)
     throw UsageError(fmt::format("a fit has {} samples: at least 100 are needed", settings.samples));
   if (settings.factorisation == Factorisation::slopes || settings.factorisation == Factorisation::fibres)
@@ -44,6 +46,7 @@ FactoredBrdf fitted(const Brdf& brdf, const std::vector<BrdfSample>& samples, co
     case Factorisation::dfg:
     case Factorisation::pqp:
     case Factorisation::pqp_disc:
+    case Factorisation::dfg_disc:
     case Factorisation::slopes:
     case Factorisation::fibres:
       break;
@@ -53,10 +56,8 @@ FactoredBrdf fitted(const Brdf& brdf, const std::vector<BrdfSample>& samples, co
 
 /// Divides a fit by its largest albedo where that is above 1.
 FactoredBrdf bounded(FactoredBrdf fit) {
-  const bool isotropic =
-      fit.factorisation != Factorisation::pqp_disc && fit.factorisation != Factorisation::svd;
-  const double albedo =
-      largestAlbedo([&](const dvec3& l, const dvec3& v) { return fit.evaluate(l, v); }, isotropic);
+  const double albedo = largestAlbedo([&](const dvec3& l, const dvec3& v) { return fit.evaluate(l, v); },
+                                      !followsTangent(fit.factorisation));
   if (albedo > 1) {
     fit.scale /= albedo;
     fit.floor /= albedo;
@@ -69,6 +70,29 @@ double errorOf(const SpherePicture& picture, const FactoredBrdf& fit) {
 }
 
 }  // namespace
+
+int mostTerms(Factorisation factorisation) {
+  switch (factorisation) {
+    case Factorisation::svd:
+      return 16;
+    case Factorisation::dfg:
+    case Factorisation::pqp:
+    case Factorisation::pqp_disc:
+    case Factorisation::dfg_disc:
+      return 2;
+    case Factorisation::tables:
+    case Factorisation::trilinear:
+    case Factorisation::slopes:
+    case Factorisation::fibres:
+      break;
+  }
+  return 1;
+}
+
+bool followsTangent(Factorisation factorisation) {
+  return factorisation == Factorisation::pqp_disc || factorisation == Factorisation::dfg_disc ||
+         factorisation == Factorisation::svd;
+}
 
 FactoredBrdf fitBrdf(const Brdf& brdf, const FitSettings& settings) {
   check(settings);
@@ -91,6 +115,7 @@ FactoredBrdf fitBrdf(const Brdf& brdf, const FitSettings& settings) {
 FactoredBrdf bakedTables(const FactoredBrdf& fit, int texels, bool warped, TableFormat format) {
   if (fit.factorisation != Factorisation::dfg && fit.factorisation != Factorisation::pqp)
     throw UsageError("only fits of kind dfg and pqp are baked into two tables");
+  if (fit.tables.front().depth > 1) throw UsageError("a sum of products is not baked into two tables");
   if (texels < 2) throw UsageError(fmt::format("factored tables need 2 texels or more, not {}", texels));
   const FactorTable& logs = fit.tables.front();
   const bool fresnel = fit.factorisation == Factorisation::dfg;

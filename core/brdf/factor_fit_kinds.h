@@ -8,7 +8,8 @@
 
 namespace limn::brdf {
 
-/// Sums of logarithms: dfg, pqp and pqp_disc. `floor` is taken out of the samples.
+/// Sums of logarithms: dfg, pqp, pqp_disc and dfg_disc. `floor` is taken out of the samples; a second product
+/// starts as what is left of their diffuse part.
 FactoredBrdf fitLogarithms(const std::vector<BrdfSample>& samples, const FitSettings& settings,
                            const glm::dvec3& floor);
 

@@ -101,13 +101,17 @@ dvec3 FactoredBrdf::evaluate(const dvec3& l, const dvec3& v) const {
       product = glsl::factored_response(tables[0], tables[1], 0, angles, warped);
       break;
     case Factorisation::dfg:
-      product = glsl::factored_dfg_response(tables[0], 0, angles);
+      product = glsl::factored_dfg_response(tables[0], 0, tables[0].depth, angles);
       break;
     case Factorisation::pqp:
-      product = glsl::factored_pqp_response(tables[0], 0, angles);
+      product = glsl::factored_pqp_response(tables[0], 0, tables[0].depth, angles);
       break;
     case Factorisation::pqp_disc:
-      product = glsl::factored_pqp_disc_response(tables[0], 0, view, light, warped);
+      product = glsl::factored_pqp_disc_response(tables[0], 0, tables[0].depth / 2, view, light, warped);
+      break;
+    case Factorisation::dfg_disc:
+      product =
+          glsl::factored_dfg_disc_response(tables[0], tables[1], 0, tables[1].depth, view, light, warped);
       break;
     case Factorisation::svd:
       product = glsl::factored_svd_response(tables[0], tables[1], 0, tables[0].depth, view, light);

@@ -52,9 +52,10 @@ struct LIMN_API FactorTable {
 /// Names the product that is taken of the tables; each is a function of glsl/materials/factored.glsl.
 enum class Factorisation {
   tables,    ///< T1(h.l, n.h) T2(n.l, n.v), two tables
-  dfg,       ///< exp(D + F + G + G), one table of three rows
-  pqp,       ///< exp(p + q + p) over cosines, one table of two rows
-  pqp_disc,  ///< the same over directions, one table of two layers
+  dfg,       ///< sum of exp(D + F + G + G), one table of three rows; a layer for each product
+  pqp,       ///< sum of exp(p + q + p) over cosines, one table of two rows; a layer for each product
+  pqp_disc,  ///< the same over directions, one table of two layers for each product
+  dfg_disc,  ///< dfg with D and G over directions, as pqp_disc, and a table of F's rows
   svd,  ///< sum of products of a function of the half vector and one of the difference, two tables of layers
   trilinear,  ///< no factors: one table over half vector and difference
   slopes,     ///< D over the half vector's direction, and rows of Fresnel's term and masking: two tables

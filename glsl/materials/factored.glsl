@@ -85,22 +85,29 @@ LIMN_FN vec3 factored_response(FACTORED_TABLE t1, FACTORED_TABLE t2, int layer, 
 LIMN_FN float factored_half_place(FactoredAngles a) { return 1.0f - a.h_from_n; }
 LIMN_FN float factored_cosine_place(float cosine) { return sqrt(cosine); }
 
-// log f = D(n.h) + F(h.l) + G(n.l) + G(n.v): the rows of `logs` are D, F and G, natural logarithms of f in 1/sr.
-LIMN_FN vec3 factored_dfg_response(FACTORED_TABLE logs, int layer, FactoredAngles a) {
-  vec3 sum = factored_lookup(logs, vec2(factored_half_place(a), 0.0f), layer) +
-             factored_lookup(logs, vec2(factored_cosine_place(a.l_dot_h), 0.5f), layer) +
-             factored_lookup(logs, vec2(factored_cosine_place(a.n_dot_l), 1.0f), layer) +
-             factored_lookup(logs, vec2(factored_cosine_place(a.n_dot_v), 1.0f), layer);
-  return exp(sum) * a.n_dot_l;
+// log f = D(n.h) + F(h.l) + G(n.l) + G(n.v), or f as the sum of `terms` such products, a layer of `logs` each: its rows are
+// D, F and G, natural logarithms of f in 1/sr.
+LIMN_FN vec3 factored_dfg_response(FACTORED_TABLE logs, int first, int terms, FactoredAngles a) {
+  vec3 f = vec3(0.0f);
+  for (int k = first; k < first + terms; ++k) {
+    f += exp(factored_lookup(logs, vec2(factored_half_place(a), 0.0f), k) +
+             factored_lookup(logs, vec2(factored_cosine_place(a.l_dot_h), 0.5f), k) +
+             factored_lookup(logs, vec2(factored_cosine_place(a.n_dot_l), 1.0f), k) +
+             factored_lookup(logs, vec2(factored_cosine_place(a.n_dot_v), 1.0f), k));
+  }
+  return f * a.n_dot_l;
 }
 
-// Homomorphic factorisation (McCool, Ang and Ahmad 2001) of isotropic BRDFs, log f = p(n.l) + q(n.h) + p(n.v): the
-// rows of `logs` are p and q.
-LIMN_FN vec3 factored_pqp_response(FACTORED_TABLE logs, int layer, FactoredAngles a) {
-  vec3 sum = factored_lookup(logs, vec2(factored_cosine_place(a.n_dot_l), 0.0f), layer) +
-             factored_lookup(logs, vec2(factored_half_place(a), 1.0f), layer) +
-             factored_lookup(logs, vec2(factored_cosine_place(a.n_dot_v), 0.0f), layer);
-  return exp(sum) * a.n_dot_l;
+// Homomorphic factorisation (McCool, Ang and Ahmad 2001) of isotropic BRDFs, log f = p(n.l) + q(n.h) + p(n.v), or a sum of
+// such products: the rows of `logs` are p and q.
+LIMN_FN vec3 factored_pqp_response(FACTORED_TABLE logs, int first, int terms, FactoredAngles a) {
+  vec3 f = vec3(0.0f);
+  for (int k = first; k < first + terms; ++k) {
+    f += exp(factored_lookup(logs, vec2(factored_cosine_place(a.n_dot_l), 0.0f), k) +
+             factored_lookup(logs, vec2(factored_half_place(a), 1.0f), k) +
+             factored_lookup(logs, vec2(factored_cosine_place(a.n_dot_v), 0.0f), k));
+  }
+  return f * a.n_dot_l;
 }
 
 // Place of a direction of the upper hemisphere (local frame) in a paraboloid's disc. Warped, the disc's radius is
@@ -112,13 +119,31 @@ LIMN_FN vec2 factored_disc_place(vec3 direction, bool warped) {
   return clamp(0.5f * disc + vec2(0.5f), vec2(0.0f), vec2(1.0f));
 }
 
-// The same for BRDFs that turn with the tangent: p and q over directions. Two layers of `logs`, p and q; local frame.
-LIMN_FN vec3 factored_pqp_disc_response(FACTORED_TABLE logs, int first, vec3 v, vec3 l, bool warped) {
+// p(l) + q(h) + p(v) of BRDFs that turn with the tangent, over directions: two layers of `logs` from `first` on, p and q.
+LIMN_FN vec3 factored_disc_logs(FACTORED_TABLE logs, int first, vec3 v, vec3 l, vec3 h, bool warped) {
+  return factored_lookup(logs, factored_disc_place(l, false), first) +
+         factored_lookup(logs, factored_disc_place(h, warped), first + 1) +
+         factored_lookup(logs, factored_disc_place(v, false), first);
+}
+
+// f n.l as the sum of `terms` such products, two layers each. Local frame.
+LIMN_FN vec3 factored_pqp_disc_response(FACTORED_TABLE logs, int first, int terms, vec3 v, vec3 l, bool warped) {
   vec3 h = factored_half(vec3(0.0f, 0.0f, 1.0f), v, l);
-  vec3 sum = factored_lookup(logs, factored_disc_place(l, false), first) +
-             factored_lookup(logs, factored_disc_place(h, warped), first + 1) +
-             factored_lookup(logs, factored_disc_place(v, false), first);
-  return exp(sum) * max(l.z, 0.0f);
+  vec3 f = vec3(0.0f);
+  for (int k = 0; k < terms; ++k) f += exp(factored_disc_logs(logs, first + 2 * k, v, l, h, warped));
+  return f * max(l.z, 0.0f);
+}
+
+// The same with a further factor F(h.l), whose rows are layers of `rows`: one for every two of `discs`.
+LIMN_FN vec3 factored_dfg_disc_response(FACTORED_TABLE discs, FACTORED_TABLE rows, int first, int terms, vec3 v, vec3 l,
+                                        bool warped) {
+  vec3 h = factored_half(vec3(0.0f, 0.0f, 1.0f), v, l);
+  vec2 fresnel_place = vec2(factored_cosine_place(clamp(dot(l, h), 0.0f, 1.0f)), 0.0f);
+  vec3 f = vec3(0.0f);
+  for (int k = 0; k < terms; ++k) {
+    f += exp(factored_disc_logs(discs, first + 2 * k, v, l, h, warped) + factored_lookup(rows, fresnel_place, first / 2 + k));
+  }
+  return f * max(l.z, 0.0f);
 }
 
 // The light's direction as seen from the half vector (Rusinkiewicz 1998, A New Change of Variables for Efficient BRDF

@@ -16,8 +16,9 @@ namespace {
 using namespace limn;
 using brdf::Factorisation;
 
-constexpr const char* kFits[] = {"analytic", "exact", "tables", "dfg", "pqp", "pqp_disc", "svd", "trilinear"};
-enum Fit { analytic, exact, tables, dfg, pqp, pqpDisc, svd, trilinear };
+constexpr const char* kFits[] = {"analytic", "exact",    "tables", "dfg",      "pqp",
+                                 "pqp_disc", "dfg_disc", "svd",    "trilinear"};
+enum Fit { analytic, exact, tables, dfg, pqp, pqpDisc, dfgDisc, svd, trilinear };
 constexpr const char* kCoordinates[] = {"warped", "published"};
 constexpr const char* kFormats[] = {"float32", "half", "byte"};
 constexpr const char* kFresnelTerms[] = {"exact", "schlick"};
@@ -32,15 +33,18 @@ constexpr Parameter kParameters[] = {
            "How models become tables. analytic: Torrance-Sparrow, Ward and Banks alone, by their formulas; "
            "exact: "
            "none does; the others fit every model that they can hold, when the graph is built"),
-    integer("terms", 1, {1, 16}, "", "Products that svd takes the sum of"),
+    integer("terms", 1, {1, 16}, "",
+            "Products that a fit is the sum of: at most 16 of svd, 2 of dfg, pqp, pqp_disc and dfg_disc, and "
+            "one of the others"),
     integer(
         "fit_texels", 0, {0, 512}, "texels",
         "Texels along each axis of a fit (of trilinear along n.h, half of that along the others); svd has "
-        "48 at most. 0: 64 for dfg and pqp, 32 for pqp_disc and trilinear, 24 for svd, 128 for tables"),
+        "48 at most. 0: 64 for dfg and pqp, 32 for pqp_disc, dfg_disc and trilinear, 24 for svd, 128 for "
+        "tables"),
     integer("texels", 128, {2, 2048}, "texels", "Width and height of analytic tables").quality().logScale(),
     choice(
         "coordinates", 0, kCoordinates,
-        "What the tables of analytic and tables lie over, and the discs of pqp_disc. warped: sqrt(1 - n.h) "
+        "What the tables of analytic and tables lie over, and the half vector's discs. warped: sqrt(1 - n.h) "
         "and roots of the cosines, in which a lobe is as wide as its roughness; published: the cosines, in "
         "which it is as wide as the square of that. ward: roots of |h.t| and |h.b|; angle and azimuth of h"),
     choice(
@@ -70,6 +74,10 @@ constexpr StressCase kStress[] = {
      .scene = "disk_and_sphere",
      .settings = "coordinates=published"},
     {.name = "fits of other models", .scene = "disk_and_sphere", .settings = "fit=pqp_disc", .factor = 100},
+    {.name = "two products over discs of 2 texels",
+     .scene = "disk_and_sphere",
+     .settings = "fit=dfg_disc terms=2 fit_texels=2",
+     .factor = 0},
 };
 
 /// Returns what a fit takes where no number of texels is given.
@@ -95,6 +103,8 @@ Factorisation factorisation(int fit) {
       return Factorisation::pqp;
     case pqpDisc:
       return Factorisation::pqp_disc;
+    case dfgDisc:
+      return Factorisation::dfg_disc;
     case svd:
       return Factorisation::svd;
     case trilinear:
@@ -110,7 +120,7 @@ factored::FitChoice described(const ParameterValues& parameters) {
   choice.analytic = fit == analytic;
   choice.fresnel = static_cast<brdf::FresnelTerm>(parameters.choice("fresnel"));
   choice.fit.factorisation = factorisation(fit);
-  choice.fit.terms = parameters.integer("terms");
+  choice.fit.terms = std::min(parameters.integer("terms"), brdf::mostTerms(choice.fit.factorisation));
   choice.fit.warped = parameters.choice("coordinates") == 0;
   choice.fit.samples = kSamples;
   choice.fit.format = static_cast<brdf::TableFormat>(parameters.choice("format"));
@@ -173,7 +183,8 @@ class FactoredBrdf : public Technique {
       answer.defines = {{"FACTORED_FIT", "FACTORED_EXACT"}};
       return answer;
     }
-    static constexpr const char* kProducts[] = {"TABLES", "DFG", "PQP", "PQP_DISC", "SVD", "TRILINEAR"};
+    static constexpr const char* kProducts[] = {"TABLES",   "DFG", "PQP",      "PQP_DISC",
+                                                "DFG_DISC", "SVD", "TRILINEAR"};
     const char* product =
         choice.analytic ? "ANALYTIC" : kProducts[static_cast<int>(choice.fit.factorisation)];
     answer.defines = {{"FACTORED_FIT", fmt::format("FACTORED_{}", product)},

@@ -64,9 +64,8 @@ std::string reasonAgainstAnalytic(const glsl::MaterialModel& model) {
 /// Says why a choice cannot hold a model; empty where it can.
 std::string reasonAgainst(const glsl::MaterialModel& model, const FitChoice& choice) {
   if (choice.analytic) return reasonAgainstAnalytic(model);
-  const Factorisation kind = choice.fit.factorisation;
-  if (glsl::model_anisotropic(model) && kind != Factorisation::pqp_disc && kind != Factorisation::svd)
-    return "it turns with the tangent, which pqp_disc and svd alone can follow";
+  if (glsl::model_anisotropic(model) && !brdf::followsTangent(choice.fit.factorisation))
+    return "it turns with the tangent, which pqp_disc, dfg_disc and svd alone can follow";
   return "";
 }
 

@@ -99,9 +99,22 @@ TEST_F(BrdfCommand, FitsOfModels) {
   // Every kind, in few texels.
   const Outcome all = limn({"brdf", "fit", "metal:0.5", "--texels", "8"});
   ASSERT_EQ(all.status, 0) << all.err;
-  for (const char* name : {"dfg 8 ", "baked 8 x 8", "pqp 8 ", "pqp 8 x 8, warped", "pqp 8 x 8 ", "1 term",
-                           "4 terms", "trilinear 8 x 4 x 4", "deviation"})
+  for (const char* name : {"dfg 8 ", "baked 8 x 8", "pqp 8 ", "pqp 8 x 8, warped", "pqp 8 x 8 ",
+                           "dfg 8 x 8, warped", "1 term", "4 terms", "trilinear 8 x 4 x 4", "deviation"})
     EXPECT_THAT(all.out, HasSubstr(name));
+}
+
+/// Sums of products: each kind among all has as many as it takes, and a kind by itself refuses more.
+TEST_F(BrdfCommand, FitsOfMoreProductsThanTheyTake) {
+  const Outcome all =
+      limn({"brdf", "fit", "metal:0.5", "--texels", "8", "--terms", "3", "--no-floor", "--no-refine"});
+  ASSERT_EQ(all.status, 0) << all.err;
+  for (const char* name : {"dfg 8, 2 terms", "pqp 8 x 8, warped, 2 terms", "svd 8 x 8, 3 terms"})
+    EXPECT_THAT(all.out, HasSubstr(name));
+  expectRefused(limn({"brdf", "fit", "metal:0.5", "--fit", "dfg", "--terms", "3"}), 2,
+                {"--terms 3", "--fit dfg", "1 to 2"});
+  expectRefused(limn({"brdf", "fit", "metal:0.5", "--fit", "trilinear", "--terms", "2"}), 2,
+                {"--terms 2", "--fit trilinear", "takes 1"});
 }
 
 /// svd among all kinds has as many as it takes, and says so.

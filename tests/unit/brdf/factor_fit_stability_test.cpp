@@ -20,15 +20,22 @@ using glm::dvec3;
 using testing::HasSubstr;
 using testing::ThrowsMessage;
 
-constexpr Factorisation kAll[] = {Factorisation::tables,   Factorisation::dfg, Factorisation::pqp,
-                                  Factorisation::pqp_disc, Factorisation::svd, Factorisation::trilinear};
+constexpr Factorisation kAll[] = {Factorisation::tables,   Factorisation::dfg,      Factorisation::pqp,
+                                  Factorisation::pqp_disc, Factorisation::dfg_disc, Factorisation::svd,
+                                  Factorisation::trilinear};
 
-FitSettings small(Factorisation factorisation, int texels = 8) {
+FitSettings small(Factorisation factorisation, int texels = 8, int terms = 1) {
   FitSettings settings;
   settings.factorisation = factorisation;
   settings.texels = texels;
+  settings.terms = terms;
   settings.samples = 2000;
   return settings;
+}
+
+/// Sums of as many products as one likes, up to two.
+std::vector<int> termsOf(Factorisation factorisation) {
+  return mostTerms(factorisation) > 1 ? std::vector{1, 2} : std::vector{1};
 }
 
 void expectFinite(const FactoredBrdf& fit) {
@@ -47,7 +54,9 @@ void expectFinite(const FactoredBrdf& fit) {
 }
 
 TEST(FactorFitStability, TwoTexelsAreFinite) {
-  for (Factorisation factorisation : kAll) expectFinite(fitBrdf(plastic(0.15f), small(factorisation, 2)));
+  for (Factorisation factorisation : kAll)
+    for (int terms : termsOf(factorisation))
+      expectFinite(fitBrdf(plastic(0.15f), small(factorisation, 2, terms)));
 }
 
 TEST(FactorFitStability, NothingToFitIsAnError) {
@@ -73,8 +82,12 @@ TEST(FactorFitStability, SettingsOutOfRangeAreNamed) {
   settings = small(Factorisation::svd);
   settings.terms = 0;
   EXPECT_THAT([&] { fitBrdf(metal(0.3f), settings); }, ThrowsMessage<UsageError>(HasSubstr("0 terms")));
-  EXPECT_THROW(bakedTables(fitBrdf(metal(0.3f), small(Factorisation::trilinear)), 8, true, TableFormat::half),
-               UsageError);
+  for (Factorisation factorisation : kAll) {
+    settings = small(factorisation, 8, mostTerms(factorisation) + 1);
+    EXPECT_THAT([&] { fitBrdf(metal(0.3f), settings); }, ThrowsMessage<UsageError>(HasSubstr(" terms: 1 ")));
+  }
+  for (const FitSettings& unfit : {small(Factorisation::trilinear), small(Factorisation::dfg, 8, 2)})
+    EXPECT_THROW(bakedTables(fitBrdf(metal(0.3f), unfit), 8, true, TableFormat::half), UsageError);
 }
 
 // f = albedo / pi is a product of any kind, with a floor and without. Two tables hold n.l = x^2 over x,
@@ -86,14 +99,15 @@ double constantBound(Factorisation factorisation, bool floor) {
 TEST(FactorFitStability, ConstantsAreMet) {
   const dvec3 albedo(0.8, 0.5, 0);
   for (Factorisation factorisation : kAll)
-    for (bool floor : {false, true}) {
-      FitSettings settings = small(factorisation);
-      settings.floor = floor;
-      settings.samples = 10000;
-      const FactoredBrdf fit = fitBrdf([&](auto&, auto&) { return albedo / std::numbers::pi; }, settings);
-      expectFinite(fit);
-      EXPECT_LT(fit.error, constantBound(factorisation, floor)) << fit.name << ' ' << floor;
-    }
+    for (bool floor : {false, true})
+      for (int terms : termsOf(factorisation)) {
+        FitSettings settings = small(factorisation, 8, terms);
+        settings.floor = floor;
+        settings.samples = 10000;
+        const FactoredBrdf fit = fitBrdf([&](auto&, auto&) { return albedo / std::numbers::pi; }, settings);
+        expectFinite(fit);
+        EXPECT_LT(fit.error, constantBound(factorisation, floor)) << fit.name << ' ' << floor;
+      }
 }
 
 // For half vectors and differences on the horizon no light and view are above it: what svd has in those
@@ -119,25 +133,27 @@ TEST(FactorFitStability, NoiseNegativesAndHolesAreFinite) {
     const dvec3 f = clean(l, v) * (1 + 0.3 * noise(random)) + dvec3(0.05 * noise(random));
     return l.x > 0.9 ? dvec3(std::numeric_limits<double>::infinity()) : f;
   };
-  for (Factorisation factorisation : kAll) {
-    FitSettings settings = small(factorisation, 16);
-    settings.samples = 8000;
-    const FactoredBrdf fit = fitBrdf(noisy, settings);
-    expectFinite(fit);
-    EXPECT_LT(fit.error, 1) << fit.name;
-  }
+  for (Factorisation factorisation : kAll)
+    for (int terms : termsOf(factorisation)) {
+      FitSettings settings = small(factorisation, 16, terms);
+      settings.samples = 8000;
+      const FactoredBrdf fit = fitBrdf(noisy, settings);
+      expectFinite(fit);
+      EXPECT_LT(fit.error, 1) << fit.name;
+    }
 }
 
 TEST(FactorFitStability, MirrorsAndOneChannelAreFinite) {
-  for (Factorisation factorisation : kAll) {
-    expectFinite(fitBrdf(metal(1e-3f), small(factorisation)));
-    const Brdf red = [exact = metal(0.3f)](const dvec3& l, const dvec3& v) {
-      return exact(l, v) * dvec3(1, 0, 0);
-    };
-    const FactoredBrdf fit = fitBrdf(red, small(factorisation));
-    expectFinite(fit);
-    EXPECT_EQ(fit.evaluate({0, 0, 1}, {0, 0, 1}).y, 0) << fit.name;
-  }
+  for (Factorisation factorisation : kAll)
+    for (int terms : termsOf(factorisation)) {
+      expectFinite(fitBrdf(metal(1e-3f), small(factorisation, 8, terms)));
+      const Brdf red = [exact = metal(0.3f)](const dvec3& l, const dvec3& v) {
+        return exact(l, v) * dvec3(1, 0, 0);
+      };
+      const FactoredBrdf fit = fitBrdf(red, small(factorisation, 8, terms));
+      expectFinite(fit);
+      EXPECT_EQ(fit.evaluate({0, 0, 1}, {0, 0, 1}).y, 0) << fit.name;
+    }
 }
 
 // Twice as much light as arrives: the fit reflects all of it, and no more.

@@ -286,20 +286,61 @@ TEST(FactorTables, LayersOfOtherBrdfsAreNotLookedUp) {
   FactorTable second = own;
   second.depth = 8;  // others' layers before
   second.texels.insert(second.texels.begin(), own.texels.size(), glm::vec3(7));
+  // Of Fresnel's rows there is one for every two discs.
+  FactorTable ownRows{8, 1, 2, TableFormat::float32, {own.texels.begin(), own.texels.begin() + 16}};
+  FactorTable rows = ownRows;
+  rows.depth = 4;
+  rows.texels.insert(rows.texels.begin(), ownRows.texels.size(), glm::vec3(7));
   for (int i = 0; i < 100; ++i) {
     const glm::vec3 l(towards(uniform(random), 6.28 * uniform(random)));
     const glm::vec3 v(towards(uniform(random), 6.28 * uniform(random)));
     const glsl::FactoredAngles a = glsl::factored_angles({0, 0, 1}, v, l);
     EXPECT_EQ(glsl::factored_response(second, second, 4, a, true),
               glsl::factored_response(own, own, 0, a, true));
-    EXPECT_EQ(glsl::factored_dfg_response(second, 4, a), glsl::factored_dfg_response(own, 0, a));
-    EXPECT_EQ(glsl::factored_pqp_response(second, 4, a), glsl::factored_pqp_response(own, 0, a));
-    EXPECT_EQ(glsl::factored_pqp_disc_response(second, 4, v, l, true),
-              glsl::factored_pqp_disc_response(own, 0, v, l, true));
+    EXPECT_EQ(glsl::factored_dfg_response(second, 4, 4, a), glsl::factored_dfg_response(own, 0, 4, a));
+    EXPECT_EQ(glsl::factored_pqp_response(second, 4, 4, a), glsl::factored_pqp_response(own, 0, 4, a));
+    EXPECT_EQ(glsl::factored_pqp_disc_response(second, 4, 2, v, l, true),
+              glsl::factored_pqp_disc_response(own, 0, 2, v, l, true));
+    EXPECT_EQ(glsl::factored_dfg_disc_response(second, rows, 4, 2, v, l, true),
+              glsl::factored_dfg_disc_response(own, ownRows, 0, 2, v, l, true));
     EXPECT_EQ(glsl::factored_svd_response(second, second, 4, 4, v, l),
               glsl::factored_svd_response(own, own, 0, 4, v, l));
     EXPECT_EQ(glsl::factored_volume_response(second, 4, 4, v, l),
               glsl::factored_volume_response(own, 0, 4, v, l));
+  }
+}
+
+// A sum of products is the sum of what each is by itself.
+TEST(FactorTables, ProductsAreAdded) {
+  std::mt19937 random(17);
+  std::uniform_real_distribution<float> uniform(0, 1);
+  FactorTable logs{8, 8, 4, TableFormat::float32, {}}, rows{8, 1, 2, TableFormat::float32, {}};
+  for (int i = 0; i < 8 * 8 * 4; ++i)
+    logs.texels.emplace_back(uniform(random), uniform(random), uniform(random));
+  for (int i = 0; i < 8 * 2; ++i) rows.texels.emplace_back(uniform(random), uniform(random), uniform(random));
+  const auto expectSum = [](const glm::vec3& both, const glm::vec3& one, const glm::vec3& other) {
+    for (int c = 0; c < 3; ++c) EXPECT_NEAR(both[c], one[c] + other[c], 1e-5f * both[c]);
+  };
+  for (int i = 0; i < 20; ++i) {
+    const glm::vec3 l(towards(uniform(random), 6.28 * uniform(random)));
+    const glm::vec3 v(towards(uniform(random), 6.28 * uniform(random)));
+    const glsl::FactoredAngles a = glsl::factored_angles({0, 0, 1}, v, l);
+    expectSum(glsl::factored_dfg_response(logs, 0, 2, a), glsl::factored_dfg_response(logs, 0, 1, a),
+              glsl::factored_dfg_response(logs, 1, 1, a));
+    expectSum(glsl::factored_pqp_response(logs, 0, 2, a), glsl::factored_pqp_response(logs, 0, 1, a),
+              glsl::factored_pqp_response(logs, 1, 1, a));
+    const auto discs = [&](int first, int terms) {
+      return glsl::factored_pqp_disc_response(logs, first, terms, v, l, true);
+    };
+    expectSum(discs(0, 2), discs(0, 1), discs(2, 1));
+    const auto withRows = [&](int first, int terms) {
+      return glsl::factored_dfg_disc_response(logs, rows, first, terms, v, l, true);
+    };
+    expectSum(withRows(0, 2), withRows(0, 1), withRows(2, 1));
+    // Fresnel's factor alone is what sets the two apart.
+    const float place = glsl::factored_cosine_place(a.l_dot_h);
+    const glm::vec3 factor = glm::exp(glsl::factored_lookup(rows, {place, 0}, 0));
+    for (int c = 0; c < 3; ++c) EXPECT_NEAR(withRows(0, 1)[c], discs(0, 1)[c] * factor[c], 1e-5f);
   }
 }
 
