@@ -1,5 +1,5 @@
-// The translucent material that a dispatch is for, and which pixels have it. TEXTURED 1: the albedo of a material may be that of
-// the pixel. NORMALISED 1: its profile is that of normalised diffusion, 0: the dipole's.
+// The translucent materials of pixels. TEXTURED 1: the albedo of a material may be that of the pixel. NORMALISED 1: its profile is
+// that of normalised diffusion, 0: the dipole's.
 #ifndef LINE_PIXEL_GLSL
 #define LINE_PIXEL_GLSL
 #include "glsl/diffusion/boundary.glsl"
@@ -17,12 +17,12 @@ layout(std430) readonly buffer LineMaterials { LineMaterial line_materials[]; };
 #endif
 layout(std430) readonly buffer Instances { Instance instances[]; };
 layout(std430) readonly buffer LineMaterialRows { uint line_material_rows[]; };  // of each material of the scene
-uniform uint line_material;  // of the dispatch
 
-// Whether a pixel of this draw instance has the dispatch's material.
-bool is_of_dispatch(uint instance) {
-  if (instance == no_instance) return false;
-  return line_material_rows[instances[instance].material] == line_material;
+const uint no_line_material = 0xffffffffu;  // of what is opaque
+
+// Of a pixel of this draw instance: the index of its material in line_materials, or no_line_material.
+uint line_material_of(uint instance) {
+  return instance == no_instance ? no_line_material : line_material_rows[instances[instance].material];
 }
 
 // By how much light goes further below a pixel than taps say.

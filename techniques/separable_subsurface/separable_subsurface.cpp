@@ -123,16 +123,12 @@ class Passes {
     return defines;
   }
 
-  /// Calls glDispatchCompute for each material.
+  /// Lets the pass dispatch one invocation for each pixel.
   void execute(frame::PassBuilder& pass, gpu::ProgramDesc program) const {
     const auto kernel = pass.program(std::move(program));
-    pass.execute([kernel, size = inputs_.size,
-                  count = static_cast<unsigned>(kernels_.count)](frame::PassContext& context) {
-      gpu::Program& bound = context.use(kernel);
-      for (unsigned i = 0; i < count; ++i) {
-        bound.set("line_material", i);
-        context.dispatch(size.x, size.y, 1, 8, 8);
-      }
+    pass.execute([kernel, size = inputs_.size](frame::PassContext& context) {
+      context.use(kernel);
+      context.dispatch(size.x, size.y, 1, 8, 8);
     });
   }
 

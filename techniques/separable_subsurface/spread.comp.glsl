@@ -1,5 +1,5 @@
-// Spreads the light of one material's pixels along rows (ROWS 1), or along columns and lets it out (0). TANGENT 1: taps lie on
-// the plane that touches the surface; 0: on one that faces the camera. FOLLOW 1: those that are not near it in depth count as
+// Spreads the light of translucent pixels along rows (ROWS 1), or along columns and lets it out (0). TANGENT 1: taps lie on the
+// plane that touches the surface; 0: on one that faces the camera. FOLLOW 1: those that are not near it in depth count as
 // missing, as those of other instances and outside the picture do. CENTRE 1: in place of what is missing stands the light of
 // the pixel itself; 0: the mean of what is there.
 #include "techniques/separable_subsurface/line_footprint.glsl"
@@ -69,8 +69,9 @@ void main() {
   LinePixel p;
   p.pixel = pixel;
   p.instance = pixel_instance(pixel);
-  if (!is_of_dispatch(p.instance)) return;
-  LineMaterial material = line_materials[line_material];
+  uint row = line_material_of(p.instance);
+  if (row == no_line_material) return;
+  LineMaterial material = line_materials[row];
   vec4 here = texelFetch(entered, pixel, 0);
   p.light = here.rgb;
   p.depth = here.w;

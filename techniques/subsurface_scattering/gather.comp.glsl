@@ -1,6 +1,7 @@
 // The mean over the profile of the light that enters around a pixel: points drawn around it in the plane that touches the
-// surface stand for the places that rays through them see. The work groups of one z draw the same points, every block^2-th of
-// the sequence, for the pixels of one place in a pattern of block x block; with a block of 1 all pixels draw the first ones.
+// surface stand for the places that rays through them see. The pixels of a work group have the same place, its z, in a pattern
+// of block x block, for which they draw every block^2-th point of their body's sequence. Where light gets less far than
+// least_patterned_reach, all draw the points of the first place. A dispatch answers for all bodies with the program's TEXTURED.
 //
 // What it stores still lacks a factor that varies with the pixel's own colour (exit.comp.glsl): without textures C, with them
 // its root.
@@ -21,7 +22,7 @@ layout(local_size_x = 8, local_size_y = 8) in;
 #else
 #define Point DrawnPoint
 #endif
-#ifdef POINT_COUNT  // they fit a uniform block, from which all invocations load at once
+#ifdef POINT_COUNT  // they fit a uniform block, from which all invocations of a body load at once
 layout(std140) uniform Points { Point points[POINT_COUNT]; };
 #else
 layout(std430) readonly buffer Points { Point points[]; };
@@ -29,10 +30,6 @@ layout(std430) readonly buffer Points { Point points[]; };
 uniform usampler2D planes;
 uniform usampler2D entries;
 layout(rgba32f) writeonly uniform image2D gathered;
-uniform uint body_index;
-// Of the pixels that are answered: their light gets from the first to less than the second number of pixels far.
-uniform float least_reach;
-uniform float reach_end;
 uniform int block;  // pixels
 
 vec3 entering_light(ivec2 pixel) { return uintBitsToFloat(entry_unpack(texelFetch(entries, pixel, 0).xy)); }
@@ -118,20 +115,20 @@ DrawnPoint drawn_point(Drawing d, int i, uint index) {
 #endif
 
 void main() {
-  uint sub_buffer = gl_WorkGroupID.z;
-  ivec2 pixel = block * ivec2(gl_GlobalInvocationID.xy) +
-                ivec2(int(sub_buffer) % block, int(sub_buffer) / block);
+  int z = int(gl_WorkGroupID.z);
+  ivec2 pixel = block * ivec2(gl_GlobalInvocationID.xy) + ivec2(z % block, z / block);
   ivec2 size = ivec2(frame.frame_size);
   if (any(greaterThanEqual(pixel, size))) return;
   uvec4 own = texelFetch(planes, pixel, 0);
-  DiffusionBody body = bodies[body_index];
+  uint body_index = bodies_of_instances[own.w != no_instance ? own.w : 0u];
+  DiffusionBody body = bodies[body_index != no_body ? body_index : 0u];
   DiffusionBoundary boundary = diffusion_boundary(body.eta, body.entering);
   vec3 absorption = pixel_absorption(body, boundary, pixel);
   vec3 own_plane = uintBitsToFloat(own.xyz);
   float depth = 1.0 / dot(own_plane, pixel_ray(pixel));
-  float reach = min(farthest_reach(body, boundary, absorption) * pixels_of_unit(body, depth), 1e30);
-  bool asked = own.w != no_instance && bodies_of_instances[own.w != no_instance ? own.w : 0u] == body_index &&
-               reach >= least_reach && reach < reach_end;
+  float reach = farthest_reach(body, boundary, absorption) * pixels_of_unit(body, depth);
+  uint sub_buffer = reach < least_patterned_reach ? 0u : uint(z);
+  bool asked = own.w != no_instance && body_index != no_body && (body.textured != 0u) == (TEXTURED != 0);
   if (asked) {
     Colours colours = matter_colours(body.extinction, absorption, boundary);
     Drawing from;
@@ -218,7 +215,7 @@ void main() {
     vec3 mean = entry_mean(light, weights, hits, float(SAMPLES), NORMALISE, here);
 #if LIGHT_VIEWS
     mean *= entry_seen_share(weights, hits, inside_picture, NORMALISE);
-    vec3 hidden = hidden_light(from, body, boundary, place, own.w, body.first_point + sub_buffer * uint(SAMPLES), screen);
+    vec3 hidden = hidden_light(from, body, boundary, place, own.w, sub_buffer, screen);
 #if TEXTURED && ROOT
     hidden *= sqrt(colours.reflectance);
 #endif

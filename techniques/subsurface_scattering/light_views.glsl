@@ -86,10 +86,11 @@ bool is_shown(LitPlace p, uint instance, mat3 screen) {
   return dot(p.normal, from_eye) < 0.0 && (inside ? nearest : NORMALISE != 0);
 }
 
-// The part of the mean of E / pi over the profile that the camera does not show, around `place`, from the eye. `first_point`: the
-// pixel's first one among all points.
-vec3 hidden_light(Drawing from, DiffusionBody body, DiffusionBoundary boundary, vec3 place, uint instance, uint first_point,
+// The part of the mean of E / pi over the profile that the camera does not show, around `place`, from the eye. `sub_buffer`: the
+// place in the pattern whose points are drawn.
+vec3 hidden_light(Drawing from, DiffusionBody body, DiffusionBoundary boundary, vec3 place, uint instance, uint sub_buffer,
                   mat3 screen) {
+  uint first_point = body.first_point + sub_buffer * uint(SAMPLES);
   vec3 x = frame.camera_position.xyz + place;
   vec3 sum = vec3(0.0);
   for (int l = 0; l < map_light_count; ++l) {
@@ -99,7 +100,7 @@ vec3 hidden_light(Drawing from, DiffusionBody body, DiffusionBoundary boundary, 
       vec3 way = first.projection == shadow_orthographic ? first.axis_z : x - first.origin;
       float across = max(length(way), 1e-30);
       Frame plane = frame_around(way / across);
-      for (int i = (m + int(gl_WorkGroupID.z)) % MAP_POINTS; i < SAMPLES; i += MAP_POINTS) {
+      for (int i = (m + int(sub_buffer)) % MAP_POINTS; i < SAMPLES; i += MAP_POINTS) {
         DrawnPoint point = drawn_point(from, i, first_point + uint(i));
         vec3 drawn = x + body.unit * (point.offset.x * plane.t + point.offset.y * plane.b);
         ShadowView view = first;

@@ -1,6 +1,5 @@
 // Light below surfaces from points that are drawn in the plane that touches a surface and looked up in the
 // image.
-#include <limits>
 #include <map>
 #include <optional>
 #include <span>
@@ -177,17 +176,13 @@ class Passes {
     addLightViews(lights);
   }
 
-  /// Returns the mean of the light that enters around each pixel.
+  /// Returns the mean of the light that enters around each pixel: one pass for all bodies without textures,
+  /// and one for all others.
   TextureHandle addGather() {
     TextureHandle gathered = screen("entering light around pixels", GL_RGBA32F);
-    bool first = true;
-    for (const bool textured : {false, true}) {
-      std::vector<uint32_t> indices;
-      for (size_t i = 0; i < bodies_.bodies.size(); ++i)
-        if ((bodies_.bodies[i].textured != 0) == textured) indices.push_back(static_cast<uint32_t>(i));
-      if (indices.empty()) continue;
-      gathered = addGather(std::move(indices), textured, gathered, std::exchange(first, false));
-    }
+    const bool plain = !bodies_.points.empty();
+    if (plain) gathered = addGather(false, gathered, true);
+    if (anyTextured()) gathered = addGather(true, gathered, !plain);
     return gathered;
   }
 
@@ -310,7 +305,7 @@ class Passes {
             {"ROOT", inputs_.parameters.choice("mixing") == 0 ? "1" : "0"}};
   }
 
-  TextureHandle addGather(std::vector<uint32_t> indices, bool textured, TextureHandle gathered, bool first) {
+  TextureHandle addGather(bool textured, TextureHandle gathered, bool first) {
     const subsurface_scattering::Drawing drawing = drawingFor(inputs_.parameters);
     frame::PassBuilder pass = graph_.addPass("gather", SubsurfaceScattering::info.name);
     gpu::ProgramDesc description{.files = {shader("gather")}, .defines = readBodies(pass, textured)};
@@ -329,27 +324,16 @@ class Passes {
     if (lightViews_) readLightViews(pass, description.defines);
     description.defines["PLANES"] = std::to_string(inputs_.parameters.choice("planes") + 1);
     const auto program = pass.program(std::move(description));
-    pass.execute([program, indices = std::move(indices), block = drawing.block, size = inputs_.size,
+    pass.execute([program, block = drawing.block, size = inputs_.size,
                   lights = lightCount_](frame::PassContext& context) {
       gpu::Program& kernel = context.use(program);
       if (lights > 0) {
         kernel.set("map_light_count", lights);
         kernel.set("light_samples", 1);
       }
-      const auto gather = [&](int side, float leastReach, float reachEnd) {
-        kernel.set("block", side);
-        kernel.set("least_reach", leastReach);
-        kernel.set("reach_end", reachEnd);
-        const glm::ivec2 part = (size + side - 1) / side;
-        for (const uint32_t index : indices) {
-          kernel.set("body_index", index);
-          context.dispatch(part.x, part.y, side * side, kGroup, kGroup);
-        }
-      };
-      constexpr float endless = std::numeric_limits<float>::infinity();
-      const float patterned = block > 1 ? glsl::least_patterned_reach : endless;
-      gather(1, 0, patterned);
-      if (block > 1) gather(block, patterned, endless);
+      kernel.set("block", block);
+      const glm::ivec2 part = (size + block - 1) / block;
+      context.dispatch(part.x, part.y, block * block, kGroup, kGroup);
     });
     return gathered;
   }

@@ -82,6 +82,11 @@ TEST_F(SeparableSubsurfaceTest, OtherBodiesGetNoLight) {
   EXPECT_EQ(inTheDark(belowShadow(halves(scene))), 0);
 }
 
+TEST_F(SeparableSubsurfaceTest, BodiesAreTheSameBesideOthers) {
+  expectBodiesAreTheSameBesideOthers(shadowed(matter(30, 0.04f), {0, 0, 1}, 0),
+                                     [&](const scene::Scene& scene) { return belowShadow(scene); });
+}
+
 TEST_F(SeparableSubsurfaceTest, ExtremesStayWithinTheLightThatEnters) {
   std::vector<Values> choices;
   for (const std::string& profile : kProfiles)

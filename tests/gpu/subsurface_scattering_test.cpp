@@ -234,6 +234,14 @@ TEST_F(SubsurfaceScatteringTest, OtherBodiesGetNoLight) {
   }
 }
 
+TEST_F(SubsurfaceScatteringTest, BodiesAreTheSameBesideOthers) {
+  scene::Scene scene = shadowed(floor(kExtinction, kAbsorption), 0);
+  scene.nodes.back().transform.translation = {0, 3, -2};  // the shadow's edge lies across both bodies
+  expectBodiesAreTheSameBesideOthers(scene, [&](const scene::Scene& both) {
+    return below(both, {{"light_views", "1"}});
+  });
+}
+
 /// Each material has points of its own, whether it is seen or not.
 TEST_F(SubsurfaceScatteringTest, MorePointsThanAStorageBufferHoldsAreRefused) {
   scene::Scene scene = floor(kExtinction, kAbsorption);
