@@ -61,7 +61,8 @@ class TextureSpaceSubsurface : public Technique {
   TextureHandle addPasses(frame::FrameGraph& graph, const TechniqueInputs& inputs,
                           const TermRequest& request) override;
   bool update(const scene::Pose& pose) override {
-    return pose.instances.size() != drawCount_ || !texture_space::fits(pose, draws_);
+    // Where nobody asked for light below surfaces there is nothing that could fit no more.
+    return buffers_ && (pose.instances.size() != drawCount_ || !texture_space::fits(pose, draws_));
   }
 
   /// Holds what the passes of one graph read for as long as it lives.

@@ -267,6 +267,25 @@ TEST_F(SubsurfaceTechniqueTest, OpaqueScenesLeaveThemOut) {
   }
 }
 
+/// Where nobody asks for light below surfaces, frames keep what they kept without the technique.
+TEST_F(SubsurfaceTechniqueTest, UnaskedTheyLetFramesKeepResults) {
+  for (const auto& [scene, term] :
+       {std::pair(asset("cornell_box"), Term::final), std::pair(ball(0.1f), Term::direct)})
+    for (const render::TechniqueUse& use : uses()) {
+      SCOPED_TRACE(std::string(use.plugin->info->name) + ' ' + limn::name(term));
+      render::Settings s = settings(32, 32, term, {technique("hard_shadow_map"), use});
+      s.dynamic = false;
+      render::Renderer renderer(device(), scene);
+      renderer.configure(s);
+      renderer.render();
+      renderer.render();
+      int kept = 0;
+      for (const frame::PassReport& pass : renderer.explain())
+        kept += pass.name.starts_with("shadow maps") && pass.state == frame::PassState::cached;
+      EXPECT_EQ(kept, 1);
+    }
+}
+
 /// A translucent material that nothing is drawn with changes neither bits nor passes.
 TEST_F(SubsurfaceTechniqueTest, MaterialsThatAreNotDrawnHaveNoPasses) {
   const scene::Scene without = asset("cornell_box");
