@@ -97,6 +97,20 @@ void readRadii(const Horizons& horizons, std::size_t texel, std::vector<double>&
     rho[static_cast<std::size_t>(i)] = litRadius(static_cast<double>(horizons.tangent(i, texel)));
 }
 
+/// Returns what `ellipse` makes of the radii of each texel's region.
+template <class Ellipse>
+std::vector<glsl::ReliefEllipse> ofTexels(const Horizons& horizons, Ellipse&& ellipse) {
+  std::vector<glsl::ReliefEllipse> result(horizons.texels);
+  tbb::parallel_for(tbb::blocked_range<std::size_t>(0, horizons.texels), [&](const auto& range) {
+    std::vector<double> rho;
+    for (std::size_t texel = range.begin(); texel < range.end(); ++texel) {
+      readRadii(horizons, texel, rho);
+      result[texel] = ellipse(rho);
+    }
+  });
+  return result;
+}
+
 /// Returns lit minus shadowed directions inside.
 int score(const glsl::FittedEllipse& ellipse, std::span<const glm::vec2> directions,
           std::span<const std::uint8_t> lit) {
@@ -128,14 +142,7 @@ glsl::ReliefEllipse momentEllipse(std::span<const double> rho) {
 }
 
 std::vector<glsl::ReliefEllipse> momentEllipses(const Horizons& horizons) {
-  std::vector<glsl::ReliefEllipse> result;
-  result.reserve(horizons.texels);
-  std::vector<double> rho;
-  for (std::size_t texel = 0; texel < horizons.texels; ++texel) {
-    readRadii(horizons, texel, rho);
-    result.push_back(momentEllipse(rho));
-  }
-  return result;
+  return ofTexels(horizons, [](std::span<const double> rho) { return momentEllipse(rho); });
 }
 
 double differingArea(const glsl::ReliefEllipse& ellipse, std::span<const double> rho) {
@@ -169,15 +176,8 @@ glsl::ReliefEllipse nearestEllipse(std::span<const double> rho, const glsl::Reli
 }
 
 std::vector<glsl::ReliefEllipse> nearestEllipses(const Horizons& horizons) {
-  std::vector<glsl::ReliefEllipse> result(horizons.texels);
-  tbb::parallel_for(tbb::blocked_range<std::size_t>(0, horizons.texels), [&](const auto& range) {
-    std::vector<double> rho;
-    for (std::size_t texel = range.begin(); texel < range.end(); ++texel) {
-      readRadii(horizons, texel, rho);
-      result[texel] = nearestEllipse(rho, momentEllipse(rho));
-    }
-  });
-  return result;
+  return ofTexels(horizons,
+                  [](std::span<const double> rho) { return nearestEllipse(rho, momentEllipse(rho)); });
 }
 
 void EllipseMean::add(const glsl::ReliefEllipse& ellipse) {

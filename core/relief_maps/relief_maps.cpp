@@ -1,6 +1,8 @@
 #include "core/relief_maps/relief_maps.h"
 
 #include <fmt/format.h>
+#include <tbb/blocked_range.h>
+#include <tbb/parallel_for.h>
 
 #include <algorithm>
 #include <bit>
@@ -170,15 +172,19 @@ void appendPublished(std::vector<uint32_t>& words, const relief::HeightField& fi
     rays.emplace_back(d, std::sqrt(std::max(1 - glm::dot(d, d), 0.f)));
     places.push_back(glsl::horizon_place(rays.back(), kFitAzimuths));
   }
-  std::vector<uint8_t> lit(directions.size());
-  for (size_t texel = 0; texel < field.texels(); ++texel) {
-    for (size_t i = 0; i < rays.size(); ++i) {
-      const float first = horizons.tangent(places[i].first, texel),
-                  second = horizons.tangent(places[i].second, texel);
-      lit[i] = glsl::horizon_lit(rays[i], first + places[i].weight * (second - first)) ? 1 : 0;
+  std::vector<glsl::ReliefEllipse> ellipses(field.texels());
+  tbb::parallel_for(tbb::blocked_range<size_t>(0, ellipses.size()), [&](const auto& range) {
+    std::vector<uint8_t> lit(directions.size());
+    for (size_t texel = range.begin(); texel < range.end(); ++texel) {
+      for (size_t i = 0; i < rays.size(); ++i) {
+        const float first = horizons.tangent(places[i].first, texel),
+                    second = horizons.tangent(places[i].second, texel);
+        lit[i] = glsl::horizon_lit(rays[i], first + places[i].weight * (second - first)) ? 1 : 0;
+      }
+      ellipses[texel] = uniformEllipse(relief::fitPublished(directions, lit));
     }
-    append(words, uniformEllipse(relief::fitPublished(directions, lit)));
-  }
+  });
+  for (const glsl::ReliefEllipse& ellipse : ellipses) append(words, ellipse);
 }
 
 void appendHorizons(std::vector<uint32_t>& words, const relief::HeightField& field, int azimuths) {
