@@ -58,7 +58,7 @@ LIMN_FN AirlightPath airlight_path(Medium m, Light light, uint kind, AirlightRay
   p.centre = vec2(dot(from_centre, from_centre), 2.0f * dot(from_centre, ray.direction));
   p.centre_axial = dot(light.direction, from_centre);
   p.two_sided = (light.flags & light_flag_two_sided) != 0u ? 1.0f : 0.0f;
-  float slope = 1.0f / max(light.cos_inner - light.cos_outer, 1e-4f);
+  float slope = 1.0f / spot_ramp(light);
   p.ramp = (light.flags & light_flag_cone) != 0u ? vec2(slope, -slope * light.cos_outer) : vec2(0.0f, 1.0f);
   float inverse = light.range > 0.0f ? 1.0f / light.range : 0.0f;
   p.window = inverse * inverse * inverse * inverse;

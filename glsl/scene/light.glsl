@@ -73,12 +73,14 @@ LIMN_FN vec3 rectangle_radiance(Light light) {
   return light.type == light_directional ? light.emission / light.solid_angle : light.emission;
 }
 
+// Width of a spot's ramp in the cosine, at least what floats near 1 tell apart: that of a cone of 0.1 degrees is 1.5e-6.
+LIMN_FN float spot_ramp(Light light) { return max(light.cos_inner - light.cos_outer, 1e-6f); }
+
 // Cone factor at a receiver in direction w (unit, from the light's centre): a factor at the receiver, in both
 // renderers (KHR_lights_punctual: squared linear ramp in the cosine between the outer and the inner angle).
 LIMN_FN float spot_cone_factor(Light light, vec3 w) {
   if ((light.flags & light_flag_cone) == 0u) return 1.0f;
-  float range = max(light.cos_inner - light.cos_outer, 1e-4f);
-  float t = clamp((dot(light.direction, w) - light.cos_outer) / range, 0.0f, 1.0f);
+  float t = clamp((dot(light.direction, w) - light.cos_outer) / spot_ramp(light), 0.0f, 1.0f);
   return t * t;
 }
 

@@ -258,6 +258,23 @@ TEST(SceneEvaluate, Lights) {
   expectNear(glm::cross(area.axis_u, area.axis_v), -area.direction);
 }
 
+/// The cosines of a cone of half a degree and of its axis differ by 4e-5.
+TEST(SceneEvaluate, NarrowSpotsHaveTheirWholeLightOnTheAxis) {
+  for (const double outer : {0.3, 0.01, 0.004}) {
+    GltfBuilder b;
+    b.light({{"type", "spot"}, {"spot", {{"innerConeAngle", 0.5 * outer}, {"outerConeAngle", outer}}}});
+    const glsl::Light light = evaluate(loadBuilt(b), 0).lights[0];
+    const auto factor = [&](double angle) {
+      return glsl::spot_cone_factor(light, glm::vec3(std::sin(angle), 0, -std::cos(angle)));
+    };
+    EXPECT_EQ(factor(0), 1) << outer;
+    EXPECT_EQ(factor(1.1 * outer), 0) << outer;
+    // The ramp is linear in the cosine, squared.
+    const double ramp = (std::cos(0.8 * outer) - std::cos(outer)) / (std::cos(0.5 * outer) - std::cos(outer));
+    EXPECT_NEAR(factor(0.8 * outer), ramp * ramp, 0.04) << outer;
+  }
+}
+
 GltfBuilder quad(const std::vector<glm::vec3>& corners, json material, json node = json::object()) {
   GltfBuilder b;
   b.triangle();
