@@ -103,8 +103,12 @@ double densityLength(const DensityGrid& grid, const glm::vec3& origin, const glm
     if (half > 0)
       sum += half * (interpolated(grid, line.origin + (middle - half * node) * line.direction) +
                      interpolated(grid, line.origin + (middle + half * node) * line.direction));
-    for (int axis = 0; axis < 3; ++axis)
-      if (next[axis] <= end) next[axis] += step[axis];
+    for (int axis = 0; axis < 3; ++axis) {
+      if (next[axis] > end) continue;
+      // From so far that t has fewer digits than there are voxels in between, planes cannot be told apart.
+      const double further = next[axis] + step[axis];
+      next[axis] = further > next[axis] ? further : std::numeric_limits<double>::infinity();
+    }
     t = std::max(t, end);
   }
   return sum;

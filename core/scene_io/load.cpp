@@ -82,6 +82,9 @@ void Loader::readMedium(const tinygltf::Value& medium) {
   };
   scene_.medium.sigmaA = coefficient("sigma_a");
   scene_.medium.sigmaS = coefficient("sigma_s");
+  for (int c = 0; c < 3; ++c)
+    number(static_cast<double>(scene_.medium.sigmaA[c]) + scene_.medium.sigmaS[c],
+           what + " sigma_a + sigma_s");
   if (medium.Has("g")) {
     const tinygltf::Value& g = medium.Get("g");
     if (!g.IsNumber()) fail(what + " g: a number is accepted");

@@ -29,6 +29,8 @@ void Loader::readLights() {
         light.colour[c] = ranged(source.color[static_cast<std::size_t>(c)], 0, 1e30, what + " color");
     }
     light.intensity = ranged(source.intensity, 0, 1e30, what + " intensity");
+    for (int c = 0; c < 3; ++c)
+      number(static_cast<double>(light.colour[c]) * light.intensity, what + " color * intensity");
     light.range = ranged(source.range, 0, 1e30, what + " range");
     if (source.extras.IsObject() && source.extras.Has("limn_texture"))
       light.texture = readLightTexture(source.extras.Get("limn_texture"), light.type, what + " limn_texture");

@@ -185,8 +185,12 @@ void Loader::readTexture(const TextureInfo& info, bool srgb, TextureRef& out, st
 
 void Loader::readMaterialExtensions(const tinygltf::Material& source, Material& m, const std::string& what) {
   const auto& map = source.extensions;
-  if (const auto* e = extension(map, "KHR_materials_emissive_strength"))
-    m.emission *= ranged(get(*e, "emissiveStrength", 1), 0, 1e30, what + " emissiveStrength");
+  if (const auto* e = extension(map, "KHR_materials_emissive_strength")) {
+    const float strength = ranged(get(*e, "emissiveStrength", 1), 0, 1e30, what + " emissiveStrength");
+    for (int c = 0; c < 3; ++c)
+      m.emission[c] =
+          number(static_cast<double>(m.emission[c]) * strength, what + " emissiveFactor * emissiveStrength");
+  }
   if (const auto* e = extension(map, "KHR_materials_ior")) {
     const double ior = get(*e, "ior", 1.5);
     m.ior = ior == 0 ? 1000.f : ranged(ior, 1, 1000, what + " ior");  // 0: "infinite", says the extension

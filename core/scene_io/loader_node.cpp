@@ -163,9 +163,12 @@ void Loader::readNodeLight(const tinygltf::Node& source, Node& node, const std::
     if (!(area[0] > 0 && area[1] > 0))
       fail(fmt::format("{} limn_area: sides {} and {}; two positive lengths in metres are accepted", what,
                        area[0], area[1]));
-    if (scene_.lights[static_cast<std::size_t>(node.light)].type == glsl::light_directional) {
+    const LightSource& light = scene_.lights[static_cast<std::size_t>(node.light)];
+    if (light.type == glsl::light_directional) {
       warn(what + ": limn_area has no meaning for a directional light and is ignored");
     } else {
+      const float brightest = std::max({light.colour.x, light.colour.y, light.colour.z});
+      number(brightest * (light.intensity / (area[0] * area[1])), what + " limn_area: intensity / area");
       node.limnArea = {area[0], area[1]};
     }
   }

@@ -61,6 +61,17 @@ TEST(DensityGrid, OneVoxelAndRaysAlongPlanesOfVoxels) {
       << "in lengths of the direction";
 }
 
+/// Where t has no more digits for single voxels: as far as it goes, and to an end.
+TEST(DensityGrid, TheIntegralEndsHoweverFarTheBoxIs) {
+  const DensityGrid grid = gridOf({512, 1, 1}, vec3(0), vec3(512, 1, 1), [](vec3) { return 3.f; });
+  for (const int exponent : {50, 53, 54, 57}) {
+    const float away = std::ldexp(1.f, exponent);
+    const double step = std::max(std::ldexp(1.0, exponent - 52), 1.0);  // between two t there
+    EXPECT_NEAR(densityLength(grid, {-away, 0.5f, 0.5f}, {1, 0, 0}, 0, 3e38f), 3 * 512, 6 * step) << exponent;
+    EXPECT_NEAR(densityLength(grid, {away, 0.5f, 0.5f}, {-1, 0, 0}, 0, 3e38f), 3 * 512, 6 * step) << exponent;
+  }
+}
+
 TEST(DensityGrid, TheUnitBoxIsMetWhereItIs) {
   const glm::vec2 through = glsl::unit_box_range({-1, 0.5f, 0.5f}, {2, 0, 0});
   EXPECT_FLOAT_EQ(through.x, 0.5f);

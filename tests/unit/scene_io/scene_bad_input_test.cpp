@@ -155,6 +155,30 @@ TEST(SceneBadInput, NotFiniteTransforms) {
   EXPECT_THAT(loadError(d.glb()), HasSubstr("extent is not a finite number"));
 }
 
+/// Numbers each of which is accepted, and of which something is made that is none.
+TEST(SceneBadInput, NotFiniteLight) {
+  const auto lit = [](json source, json node) {
+    GltfBuilder b;
+    b.light(std::move(source), std::move(node));
+    return loadError(b.glb());
+  };
+  EXPECT_THAT(lit({{"type", "point"}, {"intensity", 1e30}, {"color", {0, 1e30, 0}}}, json::object()),
+              AllOf(HasSubstr("light 0 color * intensity"), HasSubstr("not a finite number")));
+  for (const double side : {1e-20, 1e-30})  // the area of the second is 0 in single precision
+    EXPECT_THAT(lit({{"type", "point"}, {"intensity", 1e9}}, {{"extras", {{"limn_area", {side, side}}}}}),
+                AllOf(HasSubstr("node 0 limn_area: intensity / area"), HasSubstr("not a finite number")));
+  GltfBuilder material;
+  material.append("materials",
+                  {{"emissiveFactor", {1e20, 1, 1}},
+                   {"extensions", {{"KHR_materials_emissive_strength", {{"emissiveStrength", 1e20}}}}}});
+  EXPECT_THAT(loadError(material.glb()), AllOf(HasSubstr("material 0 emissiveFactor * emissiveStrength"),
+                                               HasSubstr("not a finite number")));
+  GltfBuilder medium;
+  medium.append("scenes", {{"extras", {{"limn_medium", {{"sigma_a", 3e38}, {"sigma_s", 3e38}}}}}});
+  EXPECT_THAT(loadError(medium.glb()),
+              AllOf(HasSubstr("limn_medium sigma_a + sigma_s"), HasSubstr("not a finite number")));
+}
+
 TEST(SceneBadInput, IndexOutOfRange) {
   GltfBuilder b;
   b.triangle();
