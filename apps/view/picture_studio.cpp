@@ -143,7 +143,10 @@ void PictureStudio::place(const PictureOrder& order) {
                       s.environmentScale != placed_->environmentScale;
   const bool painted = (relit || session::movingRelights(*view_, s, s.time)) &&
                        (changesMeshes(*view_, s) || (placed_ && changesMeshes(*view_, *placed_)));
-  if (turned || painted) reference_.stop();  // it reads the environment and what surfaces emit
+  if (turned || painted) {  // it reads the environment and what surfaces emit
+    reference_.stop();
+    truthKey_.clear();  // what is asked may be the same: it is asked again
+  }
   if (!relit) {
     session::moveTo(*view_, s, s.time);
   } else {
