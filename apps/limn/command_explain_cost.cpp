@@ -8,6 +8,7 @@
 #include "apps/limn/options.h"
 #include "core/base/error.h"
 #include "core/base/file.h"
+#include "core/bench/markdown_text.h"
 #include "core/bench/savings.h"
 #include "core/gpu/device.h"
 #include "core/reference/reference.h"
@@ -27,11 +28,14 @@ struct ExplainCostArguments {
   fs::path out, json;
 };
 
-Image referenceImage(const ExplainCostArguments& options, const session::View& view, int interfaces) {
+/// The reference of what the techniques show.
+Image referenceImage(const ExplainCostArguments& options, const session::View& view,
+                     const std::vector<render::TechniqueUse>& techniques) {
   reference::Request request =
       session::referenceRequest(view, view.pose, view.camera, parseTerm(options.scene.term));
   request.spp = options.spp;
-  request.interfaces = interfaces;
+  request.bounces = render::bouncesOf(request.term, techniques);
+  request.interfaces = render::interfacesOf(request.term, techniques);
   Progress progress("reference", kProgressPatience);
   request.progress = [&](const reference::Progress& state) {
     progress.update(state.fraction, fmt::format("{} spp", state.spp));
@@ -54,8 +58,7 @@ int runExplainCost(const ExplainCostArguments& options) {
   settings.size = view.size;
   settings.light = view.light;
   Image reference;
-  if (options.spp > 0)
-    reference = referenceImage(options, view, render::interfacesOf(settings.term, settings.techniques));
+  if (options.spp > 0) reference = referenceImage(options, view, settings.techniques);
 
   const auto context = Context::create(options.backend.contextOptions());
   gpu::Device device(*context);
@@ -70,10 +73,11 @@ int runExplainCost(const ExplainCostArguments& options) {
                                     savings);
   }
   context->throwErrors();
-  const std::string text = fmt::format(
-      "{}, {}, {}, {}x{}, {}\n\n{}", std::filesystem::path(options.scene.scene).filename().string(),
-      options.technique.techniques.empty() ? "no technique" : options.technique.techniques,
-      options.scene.term, view.size.x, view.size.y, context->info().renderer, toMarkdown(results));
+  const std::string what =
+      fmt::format("{}, {}, {}, {}x{}, {}", fs::path(options.scene.scene).filename().string(),
+                  options.technique.techniques.empty() ? "no technique" : options.technique.techniques,
+                  options.scene.term, view.size.x, view.size.y, context->info().renderer);
+  const std::string text = bench::markdownText(what) + "\n\n" + toMarkdown(results);
   fmt::print("{}", text);
   const auto write = [](const fs::path& file, const std::string& content) {
     if (file.empty()) return;

@@ -76,6 +76,7 @@ class Sequence {
     settings.light = view_.light;
     settings.channels = true;
     interfaces_ = render::interfacesOf(settings.term, techniques);
+    bounces_ = options.bounces.value_or(render::bouncesOf(settings.term, techniques));
     renderer_.configure(settings);
   }
 
@@ -91,7 +92,7 @@ class Sequence {
   Image truth(uint64_t seed) {
     reference::Request request =
         session::referenceRequest(view_, view_.pose, view_.camera, parseTerm(options_.scene.term));
-    request.bounces = options_.bounces.value_or(request.bounces);
+    request.bounces = bounces_;
     request.interfaces = interfaces_;
     request.spp = options_.spp;
     request.seed = seed;
@@ -99,7 +100,7 @@ class Sequence {
   }
 
   const FlickerArguments& options_;
-  int interfaces_ = 0;
+  int interfaces_ = 0, bounces_ = 0;  ///< of the reference
   session::View view_;
   std::unique_ptr<Context> context_;
   gpu::Device device_;
@@ -174,7 +175,8 @@ Action addFlickerCommand(CLI::App& command) {
       ->check(CLI::Range(2, 1 << 22));
   command
       .add_option("--bounces", options->bounces,
-                  "Bounces of the reference, as in limn reference --bounces; default: the term's")
+                  "Bounces of the reference, as in limn reference --bounces; default: those of the "
+                  "technique that\nanswers indirect, or the term's")
       ->check(CLI::Range(0, reference::kMaxBounces));
   command.add_option("--at-most", options->atMost, "Exit with status 1 if the ratio exceeds this value")
       ->check(realRange(0.0, 1e9));

@@ -9,6 +9,7 @@
 
 #include "core/base/error.h"
 #include "core/base/text.h"
+#include "core/bench/markdown_text.h"
 #include "core/gpu/format.h"
 
 namespace limn::app {
@@ -423,7 +424,7 @@ std::string toMarkdown(const FrameRecord& frame, const std::string& title) {
       "OpenGL 4.5 compiler takes;\n`passes.json` says the same as this page.\n\n| | pass | of | role | work "
       "|\n| --: | --- | "
       "--- | --- | --- |\n",
-      title);
+      bench::markdownText(title));
   const auto kept = [](const PassRecord& pass) { return pass.report.state != frame::PassState::leftOut; };
   for (size_t i = 0; i < frame.passes.size(); ++i) {
     const PassRecord& pass = frame.passes[i];

@@ -16,9 +16,13 @@ bench::Summary runSuite(const fs::path& suite, const fs::path& out, const Backen
   const LastWords words(fmt::format("interrupted; the rows so far are kept in {}, the same command goes on",
                                     (out / "results.jsonl").string()));
   const bench::Suite asked = bench::readSuite(suite);
+  const auto fitting = bench::selectCases(asked.cases, run.filters);
+  if (fitting.empty())
+    throw UsageError(fmt::format("suite {} has no case that fits the filter", suite.string()));
   const auto cases = bench::selectCases(asked.cases, run.filters, run.shard);
   if (cases.empty())
-    throw UsageError(fmt::format("suite {} has no case that fits the filter", suite.string()));
+    throw UsageError(fmt::format("--shard {}/{}: suite {} has {} cases, and none for this part",
+                                 run.shard.index, run.shard.count, suite.string(), fitting.size()));
   ResultsFolder folder(out, backend, run.stallTimeout.value_or(asked.stallTimeout));
   if (asked.minutes > 0)
     fmt::print(

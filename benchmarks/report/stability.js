@@ -13,14 +13,17 @@ function verdictText(answer) {
   return `${sign} ${answer.verdict}${answer.message ? `: ${answer.message}` : ""}`;
 }
 
+const measured = (answer) => answer.verdict === "pass" || answer.verdict === "degraded";
+
+/** Null where nothing was measured, and where the case allows no factor (0): there only values are checked. */
+const factorOf = (result, answer) => (measured(answer) && result.allowed !== 0 ? answer.factor : null);
+
 /** The term that counts, and the others: "indirect (visibility 1.00)". */
 function termText(result) {
   const others = answersOf(result).slice(1).map((answer) =>
-    `${answer.term} ${measured(answer) ? number(answer.factor) : answer.verdict}`);
+    `${answer.term} ${measured(answer) ? number(factorOf(result, answer)) : answer.verdict}`);
   return (worst(result).term ?? "") + (others.length ? ` (${others.join(", ")})` : "");
 }
-
-const measured = (answer) => answer.verdict === "pass" || answer.verdict === "degraded";
 
 /** What distinguishes the case: "four steps (steps=4, beside airlight)". */
 function caseText(result) {
@@ -33,11 +36,11 @@ function caseTable(caption, results) {
     {label: "error"}, {label: "unchanged"}, {label: "factor"}, {label: "allowed"}];
   const text = (value) => el("td", {class: "text"}, String(value ?? ""));
   return tableElement(caption, head, results.map((result) => {
-    const answer = worst(result), known = measured(answer);
-    return el("tr", {}, el("th", {scope: "row"}, String(result.technique)),
+    const answer = worst(result);
+    return el("tr", {}, el("th", {scope: "row"}, `${result.technique}${result.outdated ? " †" : ""}`),
       text(caseText(result)), text(result.scene),
       el("td", {class: "failure"}, verdictText(answer)), text(termText(result)),
-      [known ? answer.error : null, answer.benign, known ? answer.factor : null, result.allowed]
+      [measured(answer) ? answer.error : null, answer.benign, factorOf(result, answer), result.allowed || null]
         .map((value) => el("td", {}, number(value))));
   }));
 }
@@ -52,7 +55,8 @@ export function stability(found) {
   const troubled = results.filter((result) => worst(result).verdict !== "pass");
   return [el("section", {id: "stability", "aria-labelledby": "stability-name"},
     el("h2", {id: "stability-name"}, "Stability"),
-    el("p", {class: "note"}, `Extreme cases by limn stress on ${found.renderer}. Factor: the error over that of the unchanged scene.`),
+    el("p", {class: "note"}, `Extreme cases by limn stress on ${found.renderer}. Factor: the error over that of the unchanged scene.`,
+      results.some((result) => result.outdated) ? " † measured with another version of the program than the newest case." : null),
     tableElement("Extreme cases by verdict", [{label: "technique", text: true},
       ...VERDICTS.map(([name, sign]) => ({label: `${sign} ${name}`}))], counts),
     troubled.length ? caseTable("Cases that do not pass", troubled) : null,

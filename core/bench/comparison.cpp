@@ -85,8 +85,8 @@ const Row* quickest(std::span<const Row> rows, const std::string& technique, con
 
 std::optional<ReferenceTime> referenceTime(const Row& row) {
   const Metrics& e = row.error;
-  if (!isTimed(row) || !row.cost.software || row.what.timeWidth > 0 || !row.referenceSeconds ||
-      !e.noise_floor || *e.noise_floor <= 0)
+  if (!isTimed(row) || !row.cost.software || row.what.timeWidth > 0 || row.what.aa > 1 ||
+      !row.referenceSeconds || !e.noise_floor || *e.noise_floor <= 0)
     return std::nullopt;
   const double sigma = *e.noise_floor / 3, ms = 1000 * *row.referenceSeconds;
   const double least = 0.25 * sigma * sigma, own = e.rmse * e.rmse - sigma * sigma;

@@ -4,6 +4,8 @@
 
 #include <algorithm>
 #include <filesystem>
+#include <iterator>
+#include <utility>
 
 namespace limn::bench {
 namespace {
@@ -99,6 +101,20 @@ std::string markdownText(std::string_view text) {
     i += std::max<std::size_t>(length, 1);
   }
   return result;
+}
+
+std::string textOfMarkdown(std::string_view markdown) {
+  constexpr std::pair<std::string_view, char> kEntities[] = {{"&lt;", '<'}, {"&gt;", '>'}, {"&amp;", '&'}};
+  std::string text;
+  while (!markdown.empty()) {
+    const auto* found = std::ranges::find_if(
+        kEntities, [&](const auto& entity) { return markdown.starts_with(entity.first); });
+    const bool isEntity = found != std::end(kEntities);
+    if (!isEntity && markdown.front() == '\\' && markdown.size() > 1) markdown.remove_prefix(1);
+    text += isEntity ? found->second : markdown.front();
+    markdown.remove_prefix(isEntity ? found->first.size() : 1);
+  }
+  return text;
 }
 
 std::string markdownHead(const std::vector<MarkdownHead>& heads) {

@@ -66,8 +66,6 @@ Sweep parseSweep(const TomlSection& scene, const QuestionField& field) {
 void checkTogether(const TomlSection& scene, const SceneQuestion& question) {
   if (question.eye.empty() != question.target.empty())
     scene.fail(*scene.find(question.eye.empty() ? "target" : "eye"), "'eye' and 'target' belong together");
-  if (question.environment.empty() && scene.find("environment_lights") != nullptr)
-    scene.fail(*scene.find("environment_lights"), "'environment_lights' needs an 'environment'");
 }
 
 void combine(const SceneQuestion& question, std::span<const Sweep> sweeps,

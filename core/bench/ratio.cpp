@@ -2,7 +2,9 @@
 
 #include <algorithm>
 #include <cmath>
+#include <numbers>
 #include <random>
+#include <utility>
 #include <vector>
 
 #include "core/render/frame_stats.h"
@@ -38,28 +40,46 @@ double median(const Samples& samples) {
   return render::quartiles({samples.values.begin(), samples.values.end()}).median;
 }
 
-/// The t within which 95 % of Student's distribution with 2 (turns - 1) degrees of freedom lie, from its sine
-/// s, t = sqrt(df) s / sqrt(1 - s^2) (Abramowitz and Stegun, 26.7.4).
-double studentT(std::size_t turns) {
+/// The share of Student's distribution that lies within t, which is sqrt(degrees) s / sqrt(1 - s^2)
+/// (Abramowitz and Stegun, 26.7.3 and 26.7.4).
+double studentShare(std::size_t degrees, double s) {
+  const double square = 1 - s * s;  // of the cosine
+  const bool odd = degrees % 2 != 0;
+  double sum = 0, term = s;
+  if (odd) term *= std::sqrt(square);
+  for (std::size_t k = 1; 2 * k <= degrees - (odd ? 1 : 0); ++k) {
+    sum += term;
+    const double even = 2 * static_cast<double>(k);
+    term *= square * (odd ? even / (even + 1) : (even - 1) / even);
+  }
+  return odd ? 2 / std::numbers::pi * (std::asin(s) + sum) : sum;
+}
+
+/// The t within which 95 % of Student's distribution lie.
+double studentT(std::size_t degrees) {
   double low = 0, high = 1;
   for (int step = 0; step < 50; ++step) {
     const double s = (low + high) / 2;
-    double sum = 0, term = 1;
-    for (std::size_t k = 1; k < turns; ++k) {
-      sum += term;
-      term *= (1 - s * s) * (2 * static_cast<double>(k) - 1) / (2 * static_cast<double>(k));
-    }
-    (s * sum < 0.95 ? low : high) = s;
+    (studentShare(degrees, s) < 0.95 ? low : high) = s;
   }
-  return std::sqrt(2 * static_cast<double>(turns - 1)) * low / std::sqrt(1 - low * low);
+  return std::sqrt(static_cast<double>(degrees)) * low / std::sqrt(1 - low * low);
 }
 
-/// By how much the logarithms of an interval are widened that resampled turns give.
-double widening(std::size_t turns) {
+/// By how much the logarithms of an interval are widened that the resampled turns of so many sides give.
+double widening(std::size_t turns, std::size_t sides) {
   constexpr double kNormal = 1.959964;
   if (turns < 2) return 1;
   const auto count = static_cast<double>(turns);
-  return std::sqrt(count / (count - 1)) * studentT(turns) / kNormal;
+  return std::sqrt(count / (count - 1)) * studentT(sides * (turns - 1)) / kNormal;
+}
+
+/// The value with the interval that its resamples give.
+Ratio widened(double value, std::vector<double> resamples, std::size_t turns, std::size_t sides) {
+  std::sort(resamples.begin(), resamples.end());
+  const double wider = widening(turns, sides);
+  const auto bound = [&](double resample) { return value * std::pow(resample / value, wider); };
+  return {value, bound(resamples[kResamples / 40]), bound(resamples[kResamples - 1 - kResamples / 40]),
+          static_cast<int>(turns)};
 }
 
 }  // namespace
@@ -71,13 +91,15 @@ Ratio ratioOfMedians(const Samples& numerator, const Samples& denominator) {
     const double above = resampledMedian(numerator, random, scratch);
     ratio = above / resampledMedian(denominator, random, scratch);
   }
-  std::sort(ratios.begin(), ratios.end());
-  const double value = median(numerator) / median(denominator);
-  const std::size_t turns = std::min(turnsOf(numerator), turnsOf(denominator));
-  const double wider = widening(turns);
-  const auto bound = [&](double ratio) { return value * std::pow(ratio / value, wider); };
-  return {value, bound(ratios[kResamples / 40]), bound(ratios[kResamples - 1 - kResamples / 40]),
-          static_cast<int>(turns)};
+  return widened(median(numerator) / median(denominator), std::move(ratios),
+                 std::min(turnsOf(numerator), turnsOf(denominator)), 2);
+}
+
+Ratio medianWithInterval(const Samples& samples) {
+  std::mt19937 random(1);
+  std::vector<double> scratch, medians(kResamples);
+  for (double& resampled : medians) resampled = resampledMedian(samples, random, scratch);
+  return widened(median(samples), std::move(medians), turnsOf(samples), 1);
 }
 
 }  // namespace limn::bench

@@ -29,4 +29,9 @@ struct Samples {
 /// of freedom over the normal distribution's 1.96, since few turns do not tell their spread well.
 LIMN_API Ratio ratioOfMedians(const Samples& numerator, const Samples& denominator);
 
+/// Returns the median of the samples with its interval, which is found as that of ratioOfMedians(): `value`,
+/// `low` and `high` have the samples' unit. One side's turns tell less of their spread than those of two, so
+/// that Student's t has turns - 1 degrees of freedom.
+LIMN_API Ratio medianWithInterval(const Samples& samples);
+
 }  // namespace limn::bench

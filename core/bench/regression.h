@@ -37,7 +37,8 @@ struct Regression {
 /// Compares the later rows with the earlier ones, of two known machines the errors alone. A difference of
 /// errors counts where it exceeds three standard deviations of what the noise of two independent references
 /// does to it: MSE_a - MSE_b has the standard deviation 2 sigma (RMSE_a + RMSE_b + sigma) / sqrt(pixels) at
-/// most, where sigma is the references' noise.
+/// most, where sigma is the references' noise and that and the errors are spread evenly over the pixels. (It
+/// is larger where both gather in the same few; rows against the same reference differ by no noise at all.)
 LIMN_API Regression compareResults(std::span<const Row> before, std::span<const Row> now,
                                    const RegressionOptions& options = {});
 

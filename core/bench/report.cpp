@@ -157,18 +157,20 @@ Json tableJson(const Table& table, const Site& ofRenderer, EmbeddedPictures& pic
                {"size", {c.width, c.height}},
                {"time_size", {own ? c.timeWidth : c.width, own ? c.timeHeight : c.height}},
                {"dynamic", c.dynamic},
-               {"frames", c.frames},
-               {"warmup", c.warmup},
                {"renderer", table.rows.front().cost.renderer}};
-  std::set<int> turns;
+  std::set<int> frames, warmup, turns;  // rows of one table may have been timed with several efforts
   std::string reference;
   for (const Row& row : table.rows) {
+    frames.insert(row.what.frames);
+    warmup.insert(row.what.warmup);
     if (isTimed(row)) turns.insert(row.cost.frameMs.turns);
     if (reference.empty()) reference = referencePicture(row);
   }
   json["software"] = site.software ? Json(*site.software) : Json();
   json["machines"] = site.machines;
   json["drivers"] = site.drivers;
+  json["frames"] = frames;
+  json["warmup"] = warmup;
   json["turns"] = turns;
   const std::vector<Window> windows = chooseWindows(table, reference, pictures);
   json["windows"] = Json::array();
@@ -251,7 +253,15 @@ Json stability(const std::filesystem::path& folder) {
   if (json.is_discarded()) throw Error(fmt::format("{}: not what limn stress writes", file.string()));
   if (!json.contains("results") || !json["results"].is_array()) return json;
   keepObjects(json["results"]);
+  const auto programOf = [](const Json& result) {
+    const Json provenance = known(result, "provenance");
+    return provenance.is_object() ? known(provenance, "program") : Json();
+  };
+  Json program;  // of the last result that records it
+  for (const Json& result : json["results"])
+    if (const Json own = programOf(result); !own.is_null()) program = own;
   for (Json& result : json["results"]) {
+    if (programOf(result) != program) result["outdated"] = true;
     result.erase("provenance");
     if (result.contains("answers")) keepObjects(result["answers"]);
   }

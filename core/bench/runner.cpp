@@ -204,10 +204,11 @@ class Run {
     report(i, 1, Progress::State::started);
     Row row;
     try {
-      if (!reference_ || referenceQuestion_ != question(c)) {
+      if (!reference_ || referenceQuestion_ != question(c) || (c.picture && !referencePictured_)) {
         reference_.reset();
         reference_ = callbacks_.reference(c);
         referenceQuestion_ = question(c);
+        referencePictured_ = c.picture;
       }
       row = measureRow(c, key, *reference_, callbacks_);
     } catch (...) {
@@ -247,6 +248,7 @@ class Run {
   Summary summary_;
   std::optional<Reference> reference_;
   std::string referenceQuestion_;
+  bool referencePictured_ = false;  ///< its picture was kept, too
 };
 
 }  // namespace

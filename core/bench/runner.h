@@ -36,7 +36,8 @@ struct Progress {
 };
 
 struct Callbacks {
-  /// Renders the reference; called once per question (consecutive cases share it).
+  /// Renders the reference, and keeps its picture where the case wants pictures; called once per question
+  /// (consecutive cases share it), and again for the first of its cases that wants pictures.
   std::function<Reference(const Case&)> reference;
   /// Keeps a picture under a name and returns its file; called for cases that want it, with the row's key,
   /// and with KEY.difference for differenceImage(). May be empty.

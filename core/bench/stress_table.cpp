@@ -2,6 +2,7 @@
 #include <fmt/format.h>
 
 #include <nlohmann/json.hpp>
+#include <ranges>
 #include <utility>
 
 #include "core/base/error.h"
@@ -48,6 +49,13 @@ std::string caseText(const StressResult& result) {
   if (!result.beside.empty())
     details += fmt::format("{}beside {}", details.empty() ? "" : ", ", result.beside);
   return details.empty() ? result.name : fmt::format("{} ({})", result.name, details);
+}
+
+/// Results stand in the order in which they were measured.
+std::string lastProgram(std::span<const StressResult> results) {
+  for (const StressResult& result : results | std::views::reverse)
+    if (!result.provenance.program.empty()) return result.provenance.program;
+  return {};
 }
 
 std::vector<MarkdownColumn<StressResult>> stressColumns() {
@@ -109,8 +117,17 @@ const StressAnswer& StressResult::worst() const {
 }
 
 std::string toMarkdown(std::span<const StressResult> results) {
-  static const std::vector<MarkdownColumn<StressResult>> columns = stressColumns();
-  return markdownTable(columns, results);
+  const std::string program = lastProgram(results);
+  bool mixed = false;
+  std::vector<MarkdownColumn<StressResult>> columns = stressColumns();
+  columns.front().cell = [&](const StressResult& r) {
+    const bool outdated = r.provenance.program != program;
+    mixed |= outdated;
+    return outdated ? r.technique + " \u2020" : r.technique;
+  };
+  const std::string table = markdownTable(columns, results);
+  return mixed ? table + "\n\u2020 measured with another version of the program than the newest case\n"
+               : table;
 }
 
 std::string toJson(std::span<const StressResult> results, const std::string& renderer) {

@@ -120,6 +120,9 @@ SweptTechnique parseTechnique(const std::string& file, const toml::table& table)
                            section.text("label", ""),
                            section.boolean("baseline", false),
                            {{}}};
+  if (technique.name == kSeparationFloor)
+    section.fail(*section.find("technique"),
+                 fmt::format("{0} is no technique; the suite's key {0} adds its rows", kSeparationFloor));
   const toml::node* parameters = section.find("parameters");
   if (parameters == nullptr) return technique;
   if (!parameters->is_table()) section.fail(*parameters, "'parameters' must be a table");

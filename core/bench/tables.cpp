@@ -21,8 +21,10 @@ namespace limn::bench {
 namespace fs = std::filesystem;
 namespace {
 
-constexpr std::string_view kHeading = "### ";                  ///< of a table in tables.md
+constexpr std::string_view kHeading = "### ";                  ///< of a table in tables.md and pictures.md
 constexpr std::string_view kCsvBegin = "scene,camera,light,";  ///< of the CSVs of every version
+constexpr std::string_view kPictureHead = "| | | |";           ///< of a table in pictures.md
+constexpr int kPictureHeadLine = 3;                            ///< of the first one, behind its heading
 
 std::string timeSizeText(const Case& c) {
   return c.timeWidth > 0 ? fmt::format(", times at {}x{}", c.timeWidth, c.timeHeight) : "";
@@ -194,17 +196,21 @@ std::set<std::string> earlierCsvs(const fs::path& folder) {
   std::set<std::string> names, used;
   std::ifstream markdown(folder / "tables.md");
   for (std::string line; std::getline(markdown, line);)
-    if (line.starts_with(kHeading)) names.insert(slug(line.substr(kHeading.size()), used));
+    if (line.starts_with(kHeading))
+      names.insert(slug(textOfMarkdown(std::string_view(line).substr(kHeading.size())), used));
   return names;
 }
 
-/// Whether the file is a CSV of limn, and not one that somebody put in its place.
-bool isOwnCsv(const fs::path& file) {
+/// Whether the file is one that limn wrote, which has `begin` at the start of its line `number`, and not one
+/// that somebody put in its place.
+bool isOwnFile(const fs::path& file, int number, std::string_view begin) {
   std::error_code ignored;
   if (!fs::is_regular_file(fs::symlink_status(file, ignored))) return false;
-  std::string begin(kCsvBegin.size(), '\0');
-  std::ifstream(file, std::ios::binary).read(begin.data(), static_cast<std::streamsize>(begin.size()));
-  return begin == kCsvBegin;
+  std::ifstream lines(file, std::ios::binary);
+  std::string line;
+  for (int i = 0; i < number; ++i)
+    if (!std::getline(lines, line)) return false;
+  return line.starts_with(begin);
 }
 
 /// A line of RFC 4180.
@@ -343,7 +349,8 @@ std::string picturesMarkdown(const Table& table) {
   }
   if (pictures.empty()) return "";
   constexpr std::size_t inLine = 3;
-  std::string text = fmt::format("### {}\n\n| | | |\n|---|---|---|\n", markdownText(table.title));
+  std::string text =
+      fmt::format("{}{}\n\n{}\n|---|---|---|\n", kHeading, markdownText(table.title), kPictureHead);
   for (std::size_t first = 0; first < pictures.size(); first += inLine) {
     text += "|";
     std::vector<std::string> below;
@@ -372,9 +379,13 @@ void writeTables(std::span<const Row> rows, const fs::path& folder) {
   // Before tables.md is written: a run that is cut short here leaves them to the next.
   std::error_code ignored;
   for (const std::string& name : old)
-    if (isOwnCsv(folder / name)) fs::remove(folder / name, ignored);
+    if (isOwnFile(folder / name, 1, kCsvBegin)) fs::remove(folder / name, ignored);
   writeTextFile(folder / "tables.md", markdown);
-  if (!pictures.empty()) writeTextFile(folder / "pictures.md", pictures);
+  const fs::path pictureFile = folder / "pictures.md";
+  if (!pictures.empty())
+    writeTextFile(pictureFile, pictures);
+  else if (isOwnFile(pictureFile, kPictureHeadLine, kPictureHead))
+    fs::remove(pictureFile, ignored);
 }
 
 }  // namespace limn::bench

@@ -47,7 +47,8 @@ LIMN_API std::string toCsv(const Table& table);
 LIMN_API std::string picturesMarkdown(const Table& table);
 
 /// Writes tables.md, one CSV per table and, where pictures were kept, pictures.md into `folder`. Removes the
-/// CSVs that were written for the titles of an earlier tables.md and that no table has any more.
+/// CSVs that were written for the titles of an earlier tables.md and that no table has any more, and an
+/// earlier pictures.md where no row has a picture any more.
 LIMN_API void writeTables(std::span<const Row> rows, const std::filesystem::path& folder);
 
 }  // namespace limn::bench

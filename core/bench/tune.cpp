@@ -119,8 +119,7 @@ double msAtPixels(const Row& row, double pixels, double rest) {
 Ratio frameMsInterval(const Row& row) {
   const FrameTime& time = row.cost.frameMs;
   const std::vector<double> samples = samplesOf(time);
-  const std::vector<double> one(static_cast<std::size_t>(std::max(time.turns, 1)), 1.0);
-  return ratioOfMedians({samples, time.turns}, {one, time.turns});
+  return medianWithInterval({samples, time.turns});
 }
 
 }  // namespace limn::bench

@@ -93,7 +93,7 @@ LIMN_API std::optional<double> badness(const MetricInfo& metric, const Metrics& 
 /// triangles in small pictures, takes `rest` times as long. At one times as many it is the time as measured.
 LIMN_API double msAtPixels(const Row& row, double pixels, double rest);
 
-/// Returns the median time of the row's frames with its interval of 95 %, as that of ratios.
+/// Returns the median time of the row's frames with its interval of 95 %.
 LIMN_API Ratio frameMsInterval(const Row& row);
 
 /// Holds the limit that the answer keeps: exactly one of the two.

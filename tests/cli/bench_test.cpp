@@ -67,6 +67,12 @@ TEST_F(BenchCommand, AgainstNothingIsRefusedBeforeAnythingIsMeasured) {
   EXPECT_FALSE(fs::exists(folder_ / "now" / "results.jsonl"));
 }
 
+TEST_F(BenchCommand, NothingToMeasureIsRefused) {
+  expectRefused(bench("out", {"--filter", "no such case"}), 2, {"no case that fits the filter"});
+  expectRefused(bench("out", {"--shard", "2/2"}), 2, {"--shard 2/2", "1 cases, and none for this part"});
+  EXPECT_FALSE(fs::exists(folder_ / "out"));
+}
+
 TEST_F(BenchCommand, ACrashLosesItsOwnRowOnly) {
   std::ofstream(folder_ / "suite.toml", std::ios::app)
       << "[[techniques]]\ntechnique = \"misbehaver\"\nparameters = {way = ['crash', 'none']}\n"

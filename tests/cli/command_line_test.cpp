@@ -168,21 +168,22 @@ TEST(CommandLine, FlickerComparesAnimationsWithTheTruth) {
 }
 
 /// Final pictures have none: without a technique that answers indirect light they show no bounce.
-TEST(CommandLine, FlickerComparesWithTheBouncesOfTheTerm) {
-  const auto change = [](std::vector<std::string> more) {
-    std::vector<std::string> all{
-        "flicker", "cornell_horse", "--technique", "hard_shadow_map", "--term", "final", "--size",
-        "32x24",   "--spp",         "64",          "--frames",        "0:1",    "--fps", "5",
-        "--json"};
+TEST(CommandLine, FlickerComparesWithTheBouncesOfTheTermOrTheTechnique) {
+  const auto change = [](const std::string& techniques, std::vector<std::string> more) {
+    std::vector<std::string> all{"flicker",  "cornell_horse", "--technique", techniques, "--term",
+                                 "final",    "--size",        "32x24",       "--spp",    "64",
+                                 "--frames", "0:1",           "--fps",       "5",        "--json"};
     all.insert(all.end(), more.begin(), more.end());
     const Outcome outcome = limn(all);
     EXPECT_EQ(outcome.status, 0) << outcome.err;
     const auto parsed = nlohmann::json::parse(outcome.out, nullptr, false);
     return parsed.is_object() ? parsed["reference_change"].get<double>() : -1;
   };
-  const double usual = change({});
-  EXPECT_EQ(usual, change({"--bounces", "0"}));
-  EXPECT_NE(usual, change({"--bounces", "1"}));
+  const double direct = change("hard_shadow_map", {}),
+               bounced = change("hard_shadow_map", {"--bounces", "1"});
+  EXPECT_EQ(direct, change("hard_shadow_map", {"--bounces", "0"}));
+  EXPECT_NE(direct, bounced);
+  EXPECT_EQ(change("hard_shadow_map,reflective_shadow_map", {}), bounced);
 }
 
 /// As in `limn render --frames`: what --set-light leaves of a light follows its animation.
@@ -250,6 +251,35 @@ TEST(CommandLine, ExplainCostComparesWithAndWithout) {
             0);
   expectRefused(limn({"explain-cost", kCornellBox, "--out", "/nowhere/cost.md"}), 1, {"/nowhere"});
   expectRefused(limn({"explain-cost", kCornellBox, "--output-term", "indirect"}), 2, {"indirect"});
+}
+
+/// A picture with indirect light has a reference with as many bounces.
+TEST(CommandLine, ExplainCostComparesWithTheBouncesOfTheTechniques) {
+  TemporaryFolder folder;
+  const std::string picture = folder / "picture.exr", truth = folder / "truth.exr";
+  const std::vector<std::string> techniques{"--technique", "hard_shadow_map,reflective_shadow_map"};
+  const auto run = [](std::vector<std::string> all, const std::vector<std::string>& more) {
+    all.insert(all.end(), more.begin(), more.end());
+    const Outcome outcome = limn(all);
+    EXPECT_EQ(outcome.status, 0) << outcome.err;
+    return outcome;
+  };
+  run({"explain-cost", kCornellBox, "--size", "32x24", "--spp", "4", "--repeat", "1", "--json",
+       folder / "cost.json"},
+      techniques);
+  run({"render", kCornellBox, "--size", "32x24", "--out", picture}, techniques);
+  run({"reference", kCornellBox, "--size", "32x24", "--term", "final", "--bounces", "1", "--spp", "4",
+       "--out", truth},
+      {});
+  const auto compared =
+      nlohmann::json::parse(run({"compare", picture, truth, "--json", "--max-masked", "100"}, {}).out);
+  std::ifstream file(folder / "cost.json");
+  const auto report = nlohmann::json::parse(file);
+  for (const auto& saving : report.at("savings"))
+    if (saving.at("applies")) {
+      EXPECT_DOUBLE_EQ(saving.at("without").at("rmse").get<double>(), compared.at("rmse").get<double>())
+          << saving.at("name");
+    }
 }
 
 TEST(CommandLine, ListNamesEveryTechniqueWithItsParameters) {

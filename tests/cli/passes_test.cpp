@@ -51,6 +51,18 @@ TEST_F(Passes, SayWhichProgramIsCompiledUnlessQuiet) {
   EXPECT_EQ(passes({"--quiet"}).err, "");
 }
 
+/// The name of a scene's file is no markup.
+TEST_F(Passes, TitlesOfPagesAreText) {
+  const std::filesystem::path scene = folder_ / "a <b> & c.glb", cost = folder_ / "cost.md";
+  std::filesystem::copy_file(kCornellBox, scene);
+  const std::string name = "a &lt;b&gt; &amp; c.glb";
+  ASSERT_EQ(limn({"passes", scene, "--technique", "pcf", "--size", "32x24", "--out", out_}).status, 0);
+  EXPECT_THAT(contents(out_ / "README.md"),
+              testing::StartsWith("# Passes of " + name + ": pcf, 32 x 24, final\n"));
+  ASSERT_EQ(limn({"explain-cost", scene, "--size", "16x12", "--repeat", "1", "--out", cost}).status, 0);
+  EXPECT_THAT(contents(cost), testing::StartsWith(name + ", no technique, final, 16x12, "));
+}
+
 TEST_F(Passes, AnEarlierFolderIsWrittenAgain) {
   ASSERT_EQ(passes({"--contents", "pcss/visibility"}).status, 0);
   EXPECT_EQ(listing(out_), (std::vector<std::string>{"README.md", "contents", "passes.json", "shaders"}));

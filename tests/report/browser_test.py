@@ -480,6 +480,8 @@ def withstands_foreign_rows(browser):
             file.write(json.dumps(row) + "\n")
     (out / "stress.json").write_text(json.dumps({"renderer": HOSTILE, "results": [
         None, {"technique": "pcss", "case": "without an answer", "answers": [None]},
+        {"technique": "pcss", "case": "values alone", "allowed": 0, "answers": [
+            {"term": "direct", "verdict": "pass", "error": 0.2, "benign": 0.1, "factor": 2}]},
         {"technique": "pcss", "case": "of an earlier version", "verdict": "pass", "error": 0.1, "factor": 1.5},
         {"technique": HOSTILE, "case": HOSTILE, "scene": HOSTILE, "answers": [
             {"term": HOSTILE, "verdict": "refused", "message": HOSTILE}, None,
@@ -487,6 +489,9 @@ def withstands_foreign_rows(browser):
     limn("report", out)
     browser.open(page)
     check(browser.evaluate("document.querySelectorAll('#stability table').length") == 3, "no stability")
+    cells = browser.evaluate("[...[...document.querySelectorAll('#stability details tr')]"
+                             ".find(row => row.textContent.includes('values alone')).cells].map(cell => cell.textContent)")
+    check(cells[-4:] == ["0.2", "0.1", "–", "–"], f"a case that only checks values shows {cells[-4:]}")
     check(browser.evaluate("window.harmed === undefined"), "a row's text ran")
     check(browser.evaluate("document.querySelectorAll('img[src=x], main script').length") == 0, "a row's text became markup")
     text = browser.evaluate("document.getElementById('results').innerText")

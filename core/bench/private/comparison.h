@@ -77,7 +77,7 @@ struct ReferenceTime {
 /// samples falls that way. e^2 is the row's squared RMSE without sigma^2, or (sigma / 2)^2 where less
 /// remains: the smallest meaningful difference of two numbers that are known to a few percent. Returns
 /// nullopt where time or noise is unknown, where the row's frames are a GPU's, and where errors and times
-/// belong to pictures of different sizes.
+/// belong to different pictures: of another size, or of several frames where the time is that of one (aa).
 LIMN_API std::optional<ReferenceTime> referenceTime(const Row& row);
 
 /// Returns a name of the row for people: its title, or settingsName().

@@ -1,4 +1,4 @@
-// Writes texts from other sources (names of scenes, techniques and files, messages of failures) as Markdown.
+// Writes tables and pictures as Markdown; whatever their cells hold is escaped (core/bench/markdown_text.h).
 #pragma once
 
 #include <functional>
@@ -9,14 +9,12 @@
 #include <vector>
 
 #include "core/base/export.h"
+#include "core/bench/markdown_text.h"
 
 namespace limn::bench {
 
-/// Returns the text escaped so that a reader of GitHub-flavoured Markdown (and CommonMark) sees its
-/// characters and nothing else: no cell, markup, link or HTML begins in it. Line breaks and tabs become
-/// spaces, other control characters their pictures (U+2400 and on), bytes that are not UTF-8 U+FFFD. GitHub
-/// may still turn an e-mail address in the shown text into a link.
-LIMN_API std::string markdownText(std::string_view text);
+/// Returns the text of which markdownText() made `markdown`, but for what that replaced by another character.
+LIMN_API std::string textOfMarkdown(std::string_view markdown);
 
 enum class Align { left, right, centre };
 

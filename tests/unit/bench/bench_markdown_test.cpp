@@ -105,6 +105,11 @@ TEST(BenchMarkdown, TextsAreShownAsTheyAre) {
   }
 }
 
+TEST(BenchMarkdown, TextsAreReadBack) {
+  for (const std::string& text : kHostile) EXPECT_EQ(textOfMarkdown(markdownText(text)), text);
+  EXPECT_EQ(textOfMarkdown("\\"), "\\") << "behind it is nothing that it could escape";
+}
+
 TEST(BenchMarkdown, ControlCharactersAndForeignBytesAreSeen) {
   EXPECT_EQ(markdownText("a\nb\r\nc\td"), "a b  c d");
   EXPECT_EQ(markdownText(std::string("\x1b[31m\0", 6)), "\xe2\x90\x9b\\[31m\xe2\x90\x80");

@@ -95,8 +95,12 @@ TEST_F(BenchReport, HoldsWhatWasMeasuredRatherThanAskedFor) {
   rows[0].cost.frameMs = {2, 2, 2, 5, {2, 2, 2, 2, 2}, 5};
   rows[1].cost.frameMs = {1, 1, 1, 3, {1, 1, 1}, 3};
   rows[2].failure = "lost";
+  rows[1].what.frames = 3;  // as in a folder of limn tune, where settings are tried with less
+  rows[1].what.warmup = 2;
   const Json table = data(rows)["tables"][0];
   EXPECT_EQ(table["turns"], (Json{3, 5}));
+  EXPECT_EQ(table["frames"], (Json{0, 3}));
+  EXPECT_EQ(table["warmup"], (Json{0, 2}));
   EXPECT_EQ(table["rows"][1]["times_as_fast"],
             (Json{{"value", 2.0}, {"low", 2.0}, {"high", 2.0}, {"turns", 3}}));
 }
@@ -199,6 +203,14 @@ TEST_F(BenchReport, FilesThatMadeTheStressTableStayOutside) {
   writeTextFile(results() / "stress.json",
                 R"({"results": [{"case": "far", "provenance": {"techniques": [{"file": "/a/t.so"}]}}, 1]})");
   EXPECT_EQ(data({row("pcss", 0.5f)})["stability"]["results"], Json::array({{{"case", "far"}}}));
+}
+
+TEST_F(BenchReport, StressResultsOfAnotherProgramAreMarked) {
+  writeTextFile(results() / "stress.json", R"({"results": [{"case": "none"},
+      {"case": "old", "provenance": {"program": "1"}}, {"case": "new", "provenance": {"program": "2"}}]})");
+  EXPECT_EQ(data({row("pcss", 0.5f)})["stability"]["results"],
+            Json::parse(R"([{"case": "none", "outdated": true}, {"case": "old", "outdated": true},
+                            {"case": "new"}])"));
 }
 
 TEST_F(BenchReport, OnlyObjectsOfTheStressTableArePassedOn) {

@@ -232,5 +232,33 @@ TEST_F(BenchResults, CsvsOfTablesThatAreNoMoreGo) {
   EXPECT_TRUE(fs::exists(copy));
 }
 
+/// Titles are escaped in tables.md, and names of files are made of them as they are.
+TEST_F(BenchResults, CsvsOfTitlesThatAreEscapedGo) {
+  for (const std::string scene : {"salt & pepper", "a<b>c", "&lt;", "[x](y)", "a\\b"}) {
+    Case c = exampleCase();
+    c.scene = scene;
+    const std::vector<Row> rows = {exampleRow(c)};
+    writeTables(rows, folder_);
+    const fs::path file = folder_ / makeTables(rows).front().fileName;
+    ASSERT_TRUE(fs::exists(file)) << scene;
+    writeTables({}, folder_);
+    EXPECT_FALSE(fs::exists(file)) << scene;
+  }
+}
+
+TEST_F(BenchResults, ThePageOfPicturesGoesWithThem) {
+  std::vector<Row> rows = {exampleRow(exampleCase())};
+  rows[0].picture = "pictures/a.png";
+  const fs::path page = folder_ / "pictures.md";
+  writeTables(rows, folder_);
+  EXPECT_NE(readTextFile(page).find("![](pictures/a.png)"), std::string::npos);
+  rows[0].picture.clear();
+  writeTables(rows, folder_);
+  EXPECT_FALSE(fs::exists(page));
+  writeTextFile(page, "# My pictures\n\nof a journey\n");
+  writeTables(rows, folder_);
+  EXPECT_TRUE(fs::exists(page)) << "another's";
+}
+
 }  // namespace
 }  // namespace limn::bench

@@ -63,6 +63,22 @@ TEST_F(BenchRunner, RunnerSharesReferencesRecordsFailuresAndResumes) {
   EXPECT_GT(row.spectrum[0], 10 * row.spectrum[5]) << "the error is the same everywhere";
 }
 
+/// As where a suite includes one without pictures and one with them.
+TEST_F(BenchRunner, PicturesHaveThatOfTheirReferenceBesideThem) {
+  std::vector<Case> cases = {exampleCase("pcss", 16), exampleCase("pcss", 32), exampleCase("pcss", 64)};
+  cases[1].picture = cases[2].picture = true;
+  Fakes fakes;
+  Callbacks callbacks = fakes.callbacks();
+  std::vector<bool> pictured;
+  callbacks.reference = [&, render = callbacks.reference](const Case& c) {
+    pictured.push_back(c.picture);
+    return render(c);
+  };
+  ResultsFile results(path_);
+  ASSERT_EQ(runCases(cases, "llvmpipe", results, callbacks).done, 3);
+  EXPECT_EQ(pictured, (std::vector{false, true}));
+}
+
 TEST_F(BenchRunner, PicturesOfRowsHoldTheirCommand) {
   std::vector<Case> cases = {exampleCase("pcss", 16), exampleCase(kSeparationFloor)};
   for (Case& c : cases) c.picture = true;

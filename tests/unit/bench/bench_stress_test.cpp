@@ -96,6 +96,19 @@ TEST(BenchStress, ARowShowsTheWorstTermAndNamesTheOthers) {
   EXPECT_THAT(toMarkdown(two), testing::HasSubstr("| three bounces (beside airlight) |"));
 }
 
+TEST(BenchStress, ResultsOfAnotherProgramAreMarked) {
+  StressResult results[] = {severalTerms(), severalTerms()};
+  results[0].technique = "old";
+  EXPECT_THAT(toMarkdown(results), testing::Not(testing::HasSubstr("\u2020"))) << "none records it";
+  for (StressResult& result : results) result.provenance.program = "1";
+  EXPECT_THAT(toMarkdown(results), testing::Not(testing::HasSubstr("\u2020")));
+  results[1].provenance.program = "2";
+  EXPECT_THAT(toMarkdown(results),
+              testing::AllOf(testing::HasSubstr("| old \u2020 |"), testing::HasSubstr("| t |"),
+                             testing::EndsWith("\n\n\u2020 measured with another version of the program than "
+                                               "the newest case\n")));
+}
+
 TEST(BenchStress, JsonKeepsEveryTermAndLeavesOutResultsOfOne) {
   StressResult results[] = {severalTerms()};
   results[0].beside = "airlight";

@@ -65,7 +65,8 @@ TEST(BenchSuiteQuestions, EnvironmentsAreSweptByThreshold) {
   Case one = suite.cases[1], other = suite.cases[2];
   one.light = other.light = "env#0";
   EXPECT_NE(question(one), question(other)) << "env#0 is not the same light";
-  expectUsageError(start + "environment_lights = 0.015\n", "needs an 'environment'");
+  EXPECT_EQ(parseSuite(start + "environment_lights = 0.015\n", "s.toml").cases.at(0).environmentLights, 0.015)
+      << "the scene may have a map of its own";
   expectUsageError(start + "environment = \"sky.exr\"\nenvironment_lights = [0.015, 2]\n",
                    "'environment_lights'");
   expectUsageError(start + "environment = \"sky.exr\"\nenvironment_shape = \"discs\"\n",

@@ -177,6 +177,9 @@ TEST(BenchSuite, ErrorsNameFileLineAndColumn) {
       "name='a'\nsizes='8x8'\n[[scenes]]\nscene='b'\n[[techniques]]\ntechnique='c,d'\nparameters={x=1}\n",
       "s.toml:7:13: parameter 'x' of a combination");
   expectUsageError(good + "[[techniques]]\ntechnique='c'\n", "the same case twice");
+  expectUsageError(
+      good + "[[techniques]]\ntechnique='separation_floor'\n",
+      "s.toml:8:11: separation_floor is no technique; the suite's key separation_floor adds its");
 }
 
 TEST(BenchSuite, TermsOfATechniqueAreNoPartOfItsParametersNames) {

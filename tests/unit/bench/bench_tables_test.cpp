@@ -281,6 +281,9 @@ TEST(BenchTables, ReferencesTakeLongerForLess) {
   row.what.timeWidth = row.what.timeHeight = 1024;  // errors and times of different pictures
   EXPECT_FALSE(referenceTime(row));
   row.what.timeWidth = row.what.timeHeight = 0;
+  row.what.aa = 2;  // the error of four frames, the time of one
+  EXPECT_FALSE(referenceTime(row));
+  row.what.aa = 1;
   row.error.noise_floor = 0;  // no noise, no Monte Carlo
   EXPECT_FALSE(referenceTime(row));
   row.error.noise_floor = 0.03;

@@ -34,6 +34,14 @@ TEST_F(SuiteCheckTest, EachThingIsSaidOnce) {
   EXPECT_EQ(signsOfLife_, 1) << "of one scene";
 }
 
+/// Scenes may have an environment of their own, which only opening them tells.
+TEST_F(SuiteCheckTest, LightsOfAnEnvironmentNeedOne) {
+  case_.environmentLights = 0.1;
+  EXPECT_THAT(missing(2), ElementsAre(HasSubstr("gem: --environment-lights needs --environment")));
+  case_.scene = "nine_spheres";
+  EXPECT_THAT(missing(), IsEmpty());
+}
+
 TEST_F(SuiteCheckTest, FilesAndTechniquesAreLookedFor) {
   case_.scene = "no_such_scene";
   case_.technique = "no_such_technique";
