@@ -177,9 +177,11 @@ TEST_F(ViewerTest, DoesNotGrow) {
               "for k in 1 2 3; do xdotool key F3; save seen.exr; done\n"
               "xdotool key Escape F4; hear opened " +
               std::to_string(i + 2) + "\nsave seen.exr; cut -d ' ' -f 2 /proc/$viewer/statm >> pages\n";
-  const Outcome outcome = view(
-      "cornell_box --technique pcss --size 160x132 --open frame --cache '' --save a.exr", script, 1200,
-      {{"MALLOC_ARENA_MAX", "1"}, {"MALLOC_TRIM_THRESHOLD_", "65536"}, {"MALLOC_MMAP_THRESHOLD_", "65536"}});
+  const Outcome outcome =
+      view("cornell_box --technique pcss --size 160x132 --open frame --cache '' --save a.exr", script, 1200,
+           {{"GLIBC_TUNABLES",
+             "glibc.malloc.hugetlb=1:glibc.malloc.arena_max=1:"
+             "glibc.malloc.trim_threshold=65536:glibc.malloc.mmap_threshold=65536"}});
   ASSERT_EQ(outcome.status, 0) << outcome.err;
   EXPECT_THAT(command("seen.exr"), testing::HasSubstr("pcss"));
   std::ifstream file(folder_ / "pages");
