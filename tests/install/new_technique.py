@@ -59,4 +59,4 @@ check(rows[1]["error"]["rmse"] != rows[0]["error"]["rmse"], "the swept parameter
 # The laws that every technique obeys are its tests.
 tests = pathlib.Path(options.build) / "bin/limn_gpu_tests"
 if tests.exists():
-    run(tests, "--gtest_filter=TechniqueTest.EveryTechnique*:TechniqueTest.ShadowsOnly*", **path)
+    run(tests, "--gtest_filter=TechniqueTest.EveryTechnique*:TechniqueTest.ShadowsOnly*", LIMN_TEST_TECHNIQUE=NAME, **path)

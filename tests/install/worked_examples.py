@@ -6,7 +6,6 @@ import os
 import pathlib
 import re
 import shlex
-import sys
 
 from common import SOURCE, cached, check, fresh, options, run
 from scratch_copy import Addition, copy_sources
@@ -28,10 +27,10 @@ LINKED = ["core/base/*.cpp", "core/question/*.cpp", "core/image/*.cpp", "core/br
           "core/reference/render.cpp", "core/reference/term.cpp", "core/render/settings.cpp", "core/render/frame_stats.cpp",
           "apps/limn/scene_flags.cpp", "tests/unit/question/*.cpp", "tests/unit/image/metric_table_test.cpp",
           "tests/unit/bench/bench_columns_test.cpp", "tests/unit/session/view_test.cpp"]
+TARGETS = ["limn", "limn_reference", "limn_bench", "limn_session", "limn_commands", "limn_unit_tests"]  # they are of
 COMPILED = ["core/gpu_scene/gpu_materials.cpp", "core/reference/surface.cpp"]  # which draw and trace: not linked
 PRECOMPILED = ["fmt/format.h", "glm/glm.hpp", "gmock/gmock.h", "gtest/gtest.h", "nlohmann/json.hpp"]
 LIBRARIES = ["gtest_main", "gtest", "gmock", "fmt", "spdlog", "tinygltf", "meshoptimizer", "tbb", "xxhash", "kissfft-float", "webp", "tomlplusplus", "dl"]
-
 
 
 def add_scene_option():
@@ -92,44 +91,36 @@ def add_material_field():
     field.before("core/reference/content_hash.cpp", "  for (const auto* texture :\n", "  if (m.clearcoat > 0) h.add(m.clearcoat);\n")
 
 
-def commands():
-    """The build's own commands by their source, relative to the source tree: (words, object)."""
-    found = {}
-    for entry in json.loads((BUILD / "compile_commands.json").read_text()):
-        file = pathlib.Path(entry["file"])
-        if file.is_relative_to(SOURCE):
-            words = shlex.split(entry["command"])
-            found[str(file.relative_to(SOURCE))] = words, pathlib.Path(entry["directory"]) / words[words.index("-o") + 1]
-    return found
-
-
-def flags(known, sources):
-    """What the build compiles these sources with, less optimisation and precompiled headers, and with the copy's folders."""
+def flags():
+    """What the build compiles these targets with, less optimisation and precompiled headers, and with the copy's folders."""
     chosen = []
-    for source in sources:
-        words = iter(known[source][0][1:])
+    for entry in json.loads((BUILD / "compile_commands.json").read_text()):
+        words = shlex.split(entry["command"])
+        if not any(f"CMakeFiles/{target}.dir/" in words[words.index("-o") + 1] for target in TARGETS):
+            continue
+        words = iter(words[1:])
         for word in words:
             pair = [word, next(words)] if word in ("-include", "-isystem", "-o", "-c") else [word]
             wanted = word == "-isystem" or re.match(r"-(D(?!.*_EXPORTS$)|I|W(?!invalid-pch)|f(?!PIE|pch)|std=)", word)
             if wanted and pair not in chosen:
                 chosen.append(pair)
     moved = {f"-I{SOURCE}": f"-I{tree}"}
-    return [moved.get(word, word) for pair in chosen for word in pair] + ["-O0", "-fPIC", "-ffunction-sections", "-fdata-sections"]
+    # It takes sources that are compiled as one for headers.
+    united = ["-Wno-subobject-linkage"] if re.search(r"(^|[/-])[cg]\+\+", options.compiler) else []
+    return [*(moved.get(word, word) for pair in chosen for word in pair), *united, "-O0", "-fPIC", "-ffunction-sections",
+            "-fdata-sections"]
 
 
-def unaffected():
-    """The build's objects that read none of the changed files; none where the build does not say what its objects read."""
-    if options.generator != "Ninja":
-        return set()
-    changed = {path for path in (str(file.relative_to(tree)) for file in tree.rglob("*") if file.is_file())
-               if (tree / path).read_bytes() != (SOURCE / path).read_bytes()}
-    free = set()
-    for paragraph in run(cached("CMAKE_MAKE_PROGRAM"), "-C", BUILD, "-t", "deps")[0].strip().split("\n\n"):
-        head, *read = paragraph.splitlines()
-        read = {os.path.relpath(BUILD / line.strip(), SOURCE) for line in read}
-        if head.endswith("(VALID)") and not read & changed:
-            free.add(BUILD / head.split(":")[0])
-    return free
+def unite(sources):
+    """The sources of each folder as one, which they may be (the test structure.unity), the longest first."""
+    folders = {}
+    for source in sources:
+        folders.setdefault(source.parent, []).append(source)
+    united = []
+    for folder, files in sorted(folders.items(), key=lambda item: -len(item[1])):
+        united.append(scratch / ("_".join(folder.relative_to(tree).parts) + ".cpp"))
+        united[-1].write_text("".join(f'#include "{file}"\n' for file in files))
+    return united
 
 
 def compile_all(sources, words):
@@ -139,7 +130,7 @@ def compile_all(sources, words):
     run(options.compiler, *words, "-x", "c++-header", prelude, "-o", f"{prelude}.gch")
 
     def compile_one(source):
-        target = objects / ("_".join(source.parts[-3:]) + ".o")
+        target = objects / (source.stem + ".o")
         run(options.compiler, *words, "-include", prelude, "-c", source, "-o", target)
         return target
 
@@ -149,24 +140,21 @@ def compile_all(sources, words):
 
 
 def build_check():
-    """Compiles what an addition changes, takes the rest from the build, and links the program."""
+    """Compiles what shows the additions, and links the program."""
     paths = scratch / "paths.cpp"
     paths.write_text((tree / "tests/support/paths.cpp.in").read_text()
                      .replace("@PROJECT_SOURCE_DIR@", str(tree)).replace("@CMAKE_BINARY_DIR@", str(BUILD)))
-    linked = [str(file.relative_to(tree)) for pattern in LINKED for file in sorted(tree.glob(pattern))]
-    known, free = commands(), unaffected()
-    kept = [source for source in linked if known[source][1] in free]
-    changed = [source for source in linked if source not in kept] + COMPILED
-    compiled = compile_all([HERE / "check.cpp", paths, BUILD / "core/version.cpp", *(tree / source for source in changed)],
-                           flags(known, linked + COMPILED))
+    linked = [file for pattern in LINKED for file in sorted(tree.glob(pattern))]
+    compiled = compile_all([*unite(linked), HERE / "check.cpp", paths, BUILD / "core/version.cpp",
+                            *(tree / source for source in COMPILED)], flags())
     program = scratch / "bin/check"  # which finds scenes and suites as limn does: beside the folder it is in
     program.parent.mkdir()
     for folder in ("assets", "benchmarks"):
         (scratch / folder).symlink_to(BUILD / folder)
     (program.parent / "limn").symlink_to(BUILD / "lib/limn")  # what liblimn looks for beside itself
-    run(options.compiler, "-Wl,--gc-sections", *compiled[:-len(COMPILED)], *(known[source][1] for source in kept),
-        *(f"-l{library}" for library in LIBRARIES), "-o", program)
-    print(f"{len(compiled)} files compiled, {len(kept)} objects of the build linked as they are")
+    run(options.compiler, "-Wl,--gc-sections", *compiled[:-len(COMPILED)], *(f"-l{library}" for library in LIBRARIES),
+        "-o", program)
+    print(f"{len(linked)} sources compiled and linked")
     return program
 
 
@@ -190,9 +178,6 @@ void main() { coats[gl_GlobalInvocationID.x] = materials[gl_GlobalInvocationID.x
     run(compiler, "-l", f"-I{tree}", "-S", "comp", shader)
 
 
-if cached("LIMN_UNITY") == "ON":
-    print("not checked: a build in which core's sources have commands of their own (LIMN_UNITY=OFF)")
-    sys.exit(77)
 copy_sources(tree, "core", "glsl", "apps", "techniques", "docs/architecture.md", "docs/bench.md", "tests/unit", "tests/support")
 for add in (add_scene_option, add_metric, add_term, add_material_field):
     add()
