@@ -7,7 +7,10 @@
 
 #include <algorithm>
 #include <cmath>
+#include <map>
 #include <string>
+#include <tuple>
+#include <utility>
 
 #include "glsl/light/coated_environment.glsl"
 #include "tests/unit/glsl/prefiltered_skies.h"
@@ -16,15 +19,19 @@
 namespace limn::glsl {
 namespace {
 
-/// The radiance filtered by a power lobe; the radiance itself for the width 0.
+/// The radiance filtered by a power lobe; the radiance itself for the width 0. Each is summed once: materials
+/// that differ in their reflectance alone have the same lobes.
 double filteredPower(const Sky& sky, const vec3& axis, float alpha) {
   if (alpha == 0) return sky.radiance(axis);
+  static std::map<std::tuple<std::string, float, float, float, float>, double> known;
+  const auto [entry, added] = known.try_emplace({sky.name, axis.x, axis.y, axis.z, alpha});
+  if (!added) return entry->second;
   const Frame frame = frame_around(axis);
   const float p = power_lobe_exponent(alpha);
   double sum = 0;
   for (int i = 0; i < kSide * kSide; ++i)
     sum += sky.radiance(from_local(frame, sample_power_lobe(p, gridPoint(i))));
-  return sum / (kSide * kSide);
+  return entry->second = sum / (kSide * kSide);
 }
 
 /// The same by the maps' levels.
@@ -50,11 +57,15 @@ double exactLobe(const Sky& sky, MaterialModel m, const vec3& n, const vec3& v) 
   return sum / (kSide * kSide);
 }
 
+/// Each lobe of microfacets is summed once, too: lookups differ in what they take of it.
 PrefilteredLobe lobeOf(const MaterialModel& m, int lookup, const vec3& n, const vec3& v) {
   if (m.kind == model_phong) return phong_prefiltered_lobe(m, lookup, n, v);
   constexpr int count = 1024;
-  return microfacet_prefiltered_lobe(m, microfacet_lobe(dot(n, v), microfacet_lobe_alpha(m), count), lookup,
-                                     n, v);
+  static std::map<std::pair<float, float>, MicrofacetLobe> known;
+  const float cosine = dot(n, v), alpha = microfacet_lobe_alpha(m);
+  const auto [entry, added] = known.try_emplace({cosine, alpha});
+  if (added) entry->second = microfacet_lobe(cosine, alpha, count);
+  return microfacet_prefiltered_lobe(m, entry->second, lookup, n, v);
 }
 
 /// Errors of one lookup.
