@@ -15,6 +15,7 @@
 #include "core/radiosity/illumination.h"
 #include "core/radiosity/scene_elements.h"
 #include "core/reference/vertices.h"
+#include "core/render/frame_stats.h"
 #include "core/scene_io/load.h"
 #include "tests/support/radiosity_meshes.h"
 
@@ -53,10 +54,8 @@ void update(benchmark::State& state) {
   for (auto _ : state) forest.refit(surfels);
 }
 
-double median(std::vector<double> values) {
-  const auto middle = values.begin() + static_cast<std::ptrdiff_t>(values.size() / 2);
-  std::ranges::nth_element(values, middle);
-  return *middle;
+double median(const std::vector<double>& values) {
+  return render::quartiles(values).median;
 }
 
 /// Through the hierarchy and for every pair in turns: medians, and that of the turns' ratios.

@@ -19,6 +19,7 @@
 #include "core/brdf/model_brdf.h"
 #include "core/context/context.h"
 #include "core/frame/frame_graph.h"
+#include "core/render/frame_stats.h"
 #include "glsl/materials/material_model.glsl"
 
 namespace {
@@ -174,10 +175,8 @@ class Pass {
   }
 };
 
-double median(std::vector<double> values) {
-  const auto middle = values.begin() + static_cast<std::ptrdiff_t>(values.size() / 2);
-  std::ranges::nth_element(values, middle);
-  return *middle;
+double median(const std::vector<double>& values) {
+  return render::quartiles(values).median;
 }
 
 /// Returns what a pass took above the pass without a material, of the median of its turn.
