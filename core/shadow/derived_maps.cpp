@@ -3,6 +3,7 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <array>
 #include <string>
 #include <vector>
 
@@ -18,8 +19,6 @@ namespace {
 using frame::Access;
 using frame::TextureHandle;
 
-enum class PyramidKind { minMax, windows };
-
 struct KnownTable {
   TextureHandle source;
   SatDesc desc;
@@ -31,39 +30,74 @@ struct KnownMoments {
   MomentTable table;
 };
 
-struct KnownPyramid {
-  TextureHandle source;
-  PyramidKind kind;
-  TextureHandle texture;
-};
-
-struct KnownNBuffer {
+/// Derived from `source` in the one way there is.
+struct KnownTexture {
   TextureHandle source, texture;
 };
 
-std::string_view nameOf(PyramidKind kind) {
-  return kind == PyramidKind::windows ? "min-max windows" : "min-max pyramid";
+/// Returns what is known to be derived from `source`; `add` makes it where nothing is.
+template <class Add>
+TextureHandle knownOr(std::vector<KnownTexture>& known, TextureHandle source, const Add& add) {
+  const auto found = std::ranges::find(known, source, &KnownTexture::source);
+  if (found != known.end()) return found->texture;
+  known.push_back({source, add()});
+  return known.back().texture;
+}
+
+/// The first pass makes level 0 and the next ones from the shadow maps, each further pass up to three
+/// from the last level of the pass before: a dispatch of a small level waits longer than it works.
+TextureHandle addMinMaxPyramid(frame::FrameGraph& graph, TextureHandle source, bool cacheable) {
+  constexpr std::string_view name = "min-max pyramid";
+  constexpr std::array<const char*, 4> images{"level_0", "level_1", "level_2", "level_3"};
+  const gpu::TextureDesc desc = derivedDesc(graph, source, name, GL_RG32F, 0);
+  TextureHandle pyramid = graph.createTexture(name, desc);
+  int last = 0;  // level made so far, and the one that the next pass starts from
+  do {
+    const bool base = last == 0;
+    const int first = last;
+    last = std::min(first + static_cast<int>(images.size()) - 1, desc.levels - 1);
+    const int made = base ? 0 : first + 1;
+    frame::PassBuilder pass =
+        graph.addPass(made == last ? fmt::format("{} level {}", name, last)
+                                   : fmt::format("{} levels {} to {}", name, made, last),
+                      "shadow");
+    pass.role(frame::PassRole::filter);
+    if (base) pass.read(source, Access::sampled, "depth", "shadow maps");
+    pyramid = pass.write(pyramid, base ? Access::imageStore : Access::imageLoadStore,
+                         frame::ShaderName(images[0]).level(first),
+                         base ? "finest levels" : "next levels from the last one");
+    for (int level = first + 1; level <= last; ++level)
+      pass.also(frame::ShaderName(images[static_cast<size_t>(level - first)]).level(level));
+    const frame::ProgramHandle program =
+        pass.program({.files = {"glsl/shadow/min_max_pyramid.comp.glsl"},
+                      .defines = {{"BASE", base ? "1" : "0"}, {"COARSER", std::to_string(last - first)}}});
+    if (cacheable) pass.cacheable();
+    pass.execute([program, last, desc](frame::PassContext& context) {
+      context.use(program);
+      context.dispatch(std::max(desc.width >> last, 1), std::max(desc.height >> last, 1), desc.layers, 8, 8);
+    });
+  } while (last < desc.levels - 1);
+  return pyramid;
 }
 
 /// Level 0 from the shadow maps, each further level from the one before: a pass each, so that the graph puts
 /// the barriers between them.
-TextureHandle addPyramid(frame::FrameGraph& graph, TextureHandle source, PyramidKind kind, bool cacheable) {
+TextureHandle addMinMaxWindows(frame::FrameGraph& graph, TextureHandle source, bool cacheable) {
+  constexpr std::string_view name = "min-max windows";
   const gpu::TextureDesc& maps = graph.desc(source);
-  const bool windows = kind == PyramidKind::windows;
-  const int levels = windows ? glsl::min_max_windows_levels(std::max(maps.width, maps.height)) : 0;
-  const gpu::TextureDesc desc = derivedDesc(graph, source, nameOf(kind), GL_RG32F, levels);
-  TextureHandle pyramid = graph.createTexture(nameOf(kind), desc);
+  const gpu::TextureDesc desc = derivedDesc(graph, source, name, GL_RG32F,
+                                            glsl::min_max_windows_levels(std::max(maps.width, maps.height)));
+  TextureHandle windows = graph.createTexture(name, desc);
   for (int level = 0; level < desc.levels; ++level) {
-    frame::PassBuilder pass = graph.addPass(fmt::format("{} level {}", nameOf(kind), level), "shadow");
+    frame::PassBuilder pass = graph.addPass(fmt::format("{} level {}", name, level), "shadow");
     pass.role(frame::PassRole::filter);
     if (level == 0) pass.read(source, Access::sampled, "depth", "shadow maps");
-    pyramid = pass.write(pyramid, level == 0 ? Access::imageStore : Access::imageLoadStore,
+    windows = pass.write(windows, level == 0 ? Access::imageStore : Access::imageLoadStore,
                          frame::ShaderName("coarser").level(level),
                          level == 0 ? "finest level" : "next level from the one before");
     if (level > 0) pass.also(frame::ShaderName("finer").level(level - 1));
-    const frame::ProgramHandle program =
-        pass.program({.files = {"glsl/shadow/pyramid.comp.glsl"},
-                      .defines = {{"BASE", level == 0 ? "1" : "0"}, {"WINDOWS", windows ? "1" : "0"}}});
+    const frame::ProgramHandle program = pass.program(
+        {.files = {"glsl/shadow/min_max_windows.comp.glsl"}, .defines = {{"BASE", level == 0 ? "1" : "0"}}});
     if (cacheable) pass.cacheable();
     pass.execute([program, level, desc](frame::PassContext& context) {
       context.use(program);
@@ -71,10 +105,10 @@ TextureHandle addPyramid(frame::FrameGraph& graph, TextureHandle source, Pyramid
                        8);
     });
   }
-  return pyramid;
+  return windows;
 }
 
-/// As addPyramid(), but the levels are layers, since each is as large as the source.
+/// As addMinMaxWindows(), but the levels are layers, since each is as large as the source.
 TextureHandle addNBuffer(frame::FrameGraph& graph, TextureHandle source, bool cacheable, int mostLayers) {
   constexpr std::string_view name = "N-buffer";
   const gpu::TextureDesc& maps = graph.desc(source);
@@ -140,18 +174,9 @@ SummedAreaTable addTable(frame::FrameGraph& graph, TextureHandle source, const S
 
 struct DerivedMaps::Implementation {
   const gpu::Device& device;
-  std::vector<KnownPyramid> pyramids = {};
-  std::vector<KnownNBuffer> nBuffers = {};
+  std::vector<KnownTexture> pyramids = {}, windows = {}, nBuffers = {};
   std::vector<KnownTable> tables = {};
   std::vector<KnownMoments> moments = {};
-
-  TextureHandle pyramid(frame::FrameGraph& graph, TextureHandle source, PyramidKind kind, bool cacheable) {
-    for (const KnownPyramid& known : pyramids) {
-      if (known.source == source && known.kind == kind) return known.texture;
-    }
-    pyramids.push_back({source, kind, addPyramid(graph, source, kind, cacheable)});
-    return pyramids.back().texture;
-  }
 };
 
 DerivedMaps::DerivedMaps(const gpu::Device& device) : implementation_(new Implementation{.device = device}) {}
@@ -159,27 +184,26 @@ DerivedMaps::~DerivedMaps() = default;
 
 void DerivedMaps::clear() {
   implementation_->pyramids.clear();
+  implementation_->windows.clear();
   implementation_->nBuffers.clear();
   implementation_->tables.clear();
   implementation_->moments.clear();
 }
 
 MinMaxPyramid DerivedMaps::minMaxPyramid(frame::FrameGraph& graph, TextureHandle depth, bool cacheable) {
-  const TextureHandle texture = implementation_->pyramid(graph, depth, PyramidKind::minMax, cacheable);
+  const TextureHandle texture =
+      knownOr(implementation_->pyramids, depth, [&] { return addMinMaxPyramid(graph, depth, cacheable); });
   return {texture, graph.desc(texture).levels};
 }
 
 TextureHandle DerivedMaps::minMaxWindows(frame::FrameGraph& graph, TextureHandle depth, bool cacheable) {
-  return implementation_->pyramid(graph, depth, PyramidKind::windows, cacheable);
+  return knownOr(implementation_->windows, depth, [&] { return addMinMaxWindows(graph, depth, cacheable); });
 }
 
 TextureHandle DerivedMaps::nBuffer(frame::FrameGraph& graph, TextureHandle depth, bool cacheable) {
-  Implementation& d = *implementation_;
-  for (const KnownNBuffer& known : d.nBuffers) {
-    if (known.source == depth) return known.texture;
-  }
-  d.nBuffers.push_back({depth, addNBuffer(graph, depth, cacheable, d.device.limits().maxArrayLayers)});
-  return d.nBuffers.back().texture;
+  return knownOr(implementation_->nBuffers, depth, [&] {
+    return addNBuffer(graph, depth, cacheable, implementation_->device.limits().maxArrayLayers);
+  });
 }
 
 SummedAreaTable DerivedMaps::summedAreaTable(frame::FrameGraph& graph, TextureHandle depth, bool cacheable,

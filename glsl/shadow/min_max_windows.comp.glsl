@@ -1,4 +1,5 @@
-// One level of a pyramid over shadow maps: (min, max) of depth, in overlapping windows (WINDOWS) or not.
+// One level of the overlapping min-max windows of shadow maps: the first from the maps (BASE 1), each further one from the one
+// before.
 #include "glsl/shadow/min_max_windows.glsl"
 
 layout(local_size_x = 8, local_size_y = 8) in;
@@ -7,9 +8,8 @@ layout(rg32f) writeonly uniform image2DArray coarser;
 #if BASE
 uniform sampler2DArray depth;
 
+// Beyond the map's edge its last texels are repeated.
 vec2 value(ivec3 at) {
-#if WINDOWS
-  // Beyond the map's edge its last texels are repeated.
   vec4 least = vec4(1.0);
   vec4 greatest = vec4(0.0);
   int quads = min_max_window(0) / 2;
@@ -22,39 +22,21 @@ vec2 value(ivec3 at) {
   least.xy = min(least.xy, least.zw);
   greatest.xy = max(greatest.xy, greatest.zw);
   return vec2(min(least.x, least.y), max(greatest.x, greatest.y));
-#else
-  return vec2(texelFetch(depth, at, 0).r);
-#endif
 }
 
 #else
 layout(rg32f) readonly uniform image2DArray finer;
 
+// The last of the finer windows reach the map's edge.
 vec2 value(ivec3 at) {
-  ivec2 fine = imageSize(finer).xy;
-  ivec2 coarse = imageSize(coarser).xy;
-#if WINDOWS
-  // The last of the finer windows reach the map's edge.
-  ivec2 first = min(2 * at.xy, fine - 1);
-  ivec2 second = min(first + (1 << min_max_overlap), fine - 1);
+  ivec2 last = imageSize(finer).xy - 1;
+  ivec2 first = min(2 * at.xy, last);
+  ivec2 second = min(first + (1 << min_max_overlap), last);
   vec2 t00 = imageLoad(finer, ivec3(first, at.z)).xy;
   vec2 t10 = imageLoad(finer, ivec3(second.x, first.y, at.z)).xy;
   vec2 t01 = imageLoad(finer, ivec3(first.x, second.y, at.z)).xy;
   vec2 t11 = imageLoad(finer, ivec3(second, at.z)).xy;
   return vec2(min(min(t00.x, t10.x), min(t01.x, t11.x)), max(max(t00.y, t10.y), max(t01.y, t11.y)));
-#else
-  // The last texel takes an odd one out along with its own.
-  ivec2 first = min(2 * at.xy, fine - 1);
-  ivec2 last = ivec2(at.x == coarse.x - 1 ? fine.x - 1 : first.x + 1, at.y == coarse.y - 1 ? fine.y - 1 : first.y + 1);
-  vec2 bounds = imageLoad(finer, ivec3(first, at.z)).xy;
-  for (int y = first.y; y <= last.y; ++y) {
-    for (int x = first.x; x <= last.x; ++x) {
-      vec2 t = imageLoad(finer, ivec3(x, y, at.z)).xy;
-      bounds = vec2(min(bounds.x, t.x), max(bounds.y, t.y));
-    }
-  }
-  return bounds;
-#endif
 }
 #endif
 
