@@ -122,7 +122,7 @@ frame::BufferHandle CausticRayService::Implementation::trace(const Request& requ
   const shadow::ShadowMaps& maps = request.made.scene;
   const SpecularBuffer &front = request.buffers.front(), &back = request.buffers.back();
   frame::PassBuilder pass = graph.addPass("caustic rays", "caustics");
-  pass.read(handles.frame, Access::uniformBuffer, "FrameBlock", "medium")
+  pass.read(handles.medium, Access::uniformBuffer, "FrameBlock", "medium, and where the scene ends")
       .read(handles.lights, Access::storageLoad, "Lights", "what lights send")
       .read(handles.instances, Access::storageLoad, "Instances", "materials of instances")
       .read(handles.materials, Access::storageLoad, "Materials", "index of refraction, colours")

@@ -44,7 +44,8 @@ GpuScene::Implementation::Implementation(gpu::Device& onDevice, const Scene& ofS
       lightTextures(makeLightTextures(onDevice, ofScene)),
       vertexArray(makeVertexArray(onDevice, geometry.hasColours())),
       dynamic(ofScene.dynamic.size()),
-      frameBuffer(onDevice, "frame", sizeof(glsl::FrameBlock), gpu::BufferUse::updated) {}
+      frameBuffer(onDevice, "frame", sizeof(glsl::FrameBlock), gpu::BufferUse::updated),
+      mediumBuffer(onDevice, "medium", sizeof(glsl::FrameBlock), gpu::BufferUse::updated) {}
 
 /// Places deformed and dynamic primitives behind the scene's own. True if places changed.
 bool GpuScene::Implementation::allocate(const Pose& pose) {
@@ -235,6 +236,12 @@ bool GpuScene::update(const Pose& pose, const CameraPose& camera, glm::ivec2 siz
   s.frameBuffer.update(0, &s.frame, sizeof(s.frame));
   before.frame_index = frameIndex;  // what is kept from frame to frame does not depend on it
   if (std::memcmp(&before, &s.frame, sizeof(before)) != 0) s.touch(&SceneHandles::frame);
+  const glsl::FrameBlock mediumBefore = s.mediumAlone;
+  setMedium(s.mediumAlone, s.scene.medium, pose.bounds);
+  if (first || std::memcmp(&mediumBefore, &s.mediumAlone, sizeof(mediumBefore)) != 0) {
+    s.mediumBuffer.update(0, &s.mediumAlone, sizeof(s.mediumAlone));
+    s.touch(&SceneHandles::medium);
+  }
   return !first && (deformedBefore != s.deformedPrimitives.size() || lightsBefore != s.lights.size());
 }
 
@@ -242,6 +249,7 @@ SceneHandles GpuScene::import(frame::FrameGraph& graph) {
   Implementation& s = *implementation_;
   s.graph = &graph;
   s.imported = {.frame = graph.importBuffer("frame", s.frameBuffer),
+                .medium = graph.importBuffer("medium", s.mediumBuffer),
                 .geometry = graph.importBuffer("geometry", s.geometry.positions()),
                 .instances = graph.importBuffer("instances", s.instanceBuffer),
                 .materials = graph.importBuffer("materials", s.materials.constants()),

@@ -101,10 +101,11 @@ struct GpuScene::Implementation {
   std::vector<glsl::Instance> instances, nextInstances;
   std::vector<glsl::Light> lights, nextLights;
   glsl::FrameBlock frame{};
+  glsl::FrameBlock mediumAlone{};  ///< SceneHandles::medium
   CameraPose camera;
   float nearPlane = 0;
   Bounds bounds;
-  gpu::Buffer instanceBuffer, lightBuffer, frameBuffer;
+  gpu::Buffer instanceBuffer, lightBuffer, frameBuffer, mediumBuffer;
 
   frame::FrameGraph* graph = nullptr;
   SceneHandles imported;

@@ -50,7 +50,10 @@ LIMN_API void readSurfaces(frame::PassBuilder& pass, const GBuffer& gbuffer);
 /// while the camera moves. Whatever depends on where surfaces are reads both `geometry` and `instances`: an
 /// instance that moves as a whole changes the latter alone.
 struct SceneHandles {
-  frame::BufferHandle frame;           ///< uniform block FrameBlock
+  frame::BufferHandle frame;  ///< uniform block FrameBlock
+  /// Uniform block FrameBlock that holds the medium and nothing else, for cacheable passes of light that is
+  /// on its way to surfaces: what they make stays valid while the camera moves.
+  frame::BufferHandle medium;
   frame::BufferHandle geometry;        ///< stands for all vertex and index data after deformation
   frame::BufferHandle instances;       ///< storage buffer of glsl::Instance: matrices and materials
   frame::BufferHandle materials;       ///< storage buffer of glsl::Material

@@ -1,14 +1,12 @@
 #include "core/indirect/virtual_lights.h"
 
 #include <algorithm>
-#include <cstring>
 #include <map>
 #include <string>
 #include <utility>
 
 #include "core/gpu_scene/gpu_medium.h"
 #include "core/gpu_scene/light_textures.h"
-#include "core/scene/medium.h"
 #include "core/scene/scene.h"
 #include "glsl/numeric/sampling.glsl"
 
@@ -27,7 +25,7 @@ struct LightBuilder {
   const shadow::ShadowMaps& maps;
   const VirtualLightDesc& desc;
   size_t lightCount;
-  BufferHandle mediumBlock;  ///< of the frame's block the medium alone; empty: the scene has none
+  bool medium;  ///< the scene has one
 
   BufferHandle buffer(const char* name, size_t elements, size_t bytes) const {
     return graph.createBuffer(name, {elements * bytes});
@@ -44,15 +42,15 @@ struct LightBuilder {
     if (cacheable) pass.cacheable();
     if (!cacheable)
       pass.read(handles.frame, Access::uniformBuffer, "FrameBlock", "which set it is, medium");
-    else if (mediumBlock)
-      pass.read(mediumBlock, Access::uniformBuffer, "FrameBlock", "medium");
+    else if (medium)
+      pass.read(handles.medium, Access::uniformBuffer, "FrameBlock", "medium");
     scene::LightTextureInput(handles).declare(pass);
-    if (mediumBlock) scene::MediumInput(handles).declare(pass);
+    if (medium) scene::MediumInput(handles).declare(pass);
   }
   /// Of the shaders that read the maps' texels.
   gpu::ProgramDesc texelProgram(const char* file, std::map<std::string, std::string> defines) const {
     scene::LightTextureInput(handles).define(defines);
-    defines["MEDIUM"] = mediumBlock ? "1" : "0";
+    defines["MEDIUM"] = medium ? "1" : "0";
     scene::MediumInput(handles).define(defines);
     return {.files = {file}, .defines = std::move(defines)};
   }
@@ -61,13 +59,6 @@ struct LightBuilder {
   BufferHandle sample(BufferHandle reflected) const;
   BufferHandle conserve(BufferHandle lights, BufferHandle reflected, BufferHandle sampled) const;
 };
-
-/// Returns the frame's block with nothing but the medium in it.
-glsl::FrameBlock mediumAlone(const scene::Scene& scene, const scene::Pose& pose) {
-  glsl::FrameBlock block{};
-  scene::setMedium(block, scene.medium, pose.bounds);
-  return block;
-}
 
 int tilesPerSide(int size) {
   return (size + kTile - 1) / kTile;
@@ -157,28 +148,6 @@ BufferHandle LightBuilder::conserve(BufferHandle before, BufferHandle reflected,
 
 void VirtualLightService::begin() {
   known_.clear();
-  importedMedium_ = {};
-}
-
-bool VirtualLightService::update(frame::FrameGraph& graph, const scene::Pose& pose) {
-  if (!importedMedium_) return false;
-  const glsl::FrameBlock now = mediumAlone(scene_, pose);
-  if (std::memcmp(&now, &medium_, sizeof(now)) == 0) return false;
-  medium_ = now;
-  mediumBuffer_.update(0, &medium_, sizeof(medium_));
-  graph.touch(importedMedium_);
-  return false;
-}
-
-BufferHandle VirtualLightService::mediumBlock() {
-  if (!scene_.medium.present() || importedMedium_) return importedMedium_;
-  medium_ = mediumAlone(scene_, context().pose);
-  if (!mediumBuffer_)
-    mediumBuffer_ =
-        gpu::Buffer(device_, "medium of virtual lights", sizeof(medium_), gpu::BufferUse::updated);
-  mediumBuffer_.update(0, &medium_, sizeof(medium_));
-  importedMedium_ = context().graph.importBuffer("medium of virtual lights", mediumBuffer_);
-  return importedMedium_;
 }
 
 VirtualLights VirtualLightService::request(std::span<const uint32_t> lights, const VirtualLightDesc& desc) {
@@ -191,7 +160,8 @@ VirtualLights VirtualLightService::request(std::span<const uint32_t> lights, con
   VirtualLights made;
   made.maps = context().services.get<shadow::ShadowMapService>().request(lights, mapDesc);
   made.count = desc.count;
-  const LightBuilder build{context().graph, context().handles, made.maps, desc, lights.size(), mediumBlock()};
+  const LightBuilder build{context().graph, context().handles,      made.maps, desc,
+                           lights.size(),   scene_.medium.present()};
   const int across = tilesPerSide(desc.mapSize);
   made.reflected = build.layerFlux(build.tileFlux(), false, static_cast<uint32_t>(across * across));
   const BufferHandle sampled = build.sample(made.reflected);

@@ -25,7 +25,6 @@
 #include "core/shadow/shadow_map.h"
 #include "core/technique/technique.h"
 #include "glsl/indirect/virtual_light.glsl"
-#include "glsl/scene/blocks.glsl"
 
 namespace limn::indirect {
 
@@ -53,8 +52,8 @@ class LIMN_API VirtualLightService : public FrameService {
  public:
   static constexpr const char* serviceName = "virtual lights";
 
-  /// `device` and `scene` must outlive the service.
-  VirtualLightService(gpu::Device& device, const scene::Scene& scene) : device_(device), scene_(scene) {}
+  /// `scene` must outlive the service.
+  explicit VirtualLightService(const scene::Scene& scene) : scene_(scene) {}
 
   /// Returns virtual lights of `lights` (indices into Pose::lights, at least one). Throws UsageError when the
   /// maps would take too much memory.
@@ -62,22 +61,14 @@ class LIMN_API VirtualLightService : public FrameService {
 
  private:
   void begin() override;
-  bool update(frame::FrameGraph& graph, const scene::Pose& pose) override;
-  /// Returns a block like the frame's that holds the medium alone, so that lights are kept while only the
-  /// camera moves; empty: the scene has no medium.
-  frame::BufferHandle mediumBlock();
 
   struct Known {
     std::vector<uint32_t> lights;
     VirtualLightDesc desc;
     VirtualLights made;
   };
-  gpu::Device& device_;
   const scene::Scene& scene_;
   std::vector<Known> known_;
-  glsl::FrameBlock medium_{};
-  gpu::Buffer mediumBuffer_;
-  frame::BufferHandle importedMedium_;  ///< in the current graph; empty: nobody asked for it
 };
 
 /// Keeps what a technique makes of the virtual lights of some lights for as long as its graph. A scene with

@@ -17,7 +17,7 @@ FrameServices makeServices(gpu::Device& device, scene::GpuScene& scene) {
   FrameServices services;
   services.add<shadow::ShadowMapService>(device, scene);
   services.add<history::FrameHistoryService>(scene);
-  services.add<indirect::VirtualLightService>(device, scene.scene());
+  services.add<indirect::VirtualLightService>(scene.scene());
   services.add<caustics::CausticRayService>(device, scene);
   services.add<rays::RayGeometryService>(device, scene.scene());
   services.add<relief_maps::ReliefMapService>(device, scene.scene());

@@ -88,7 +88,7 @@ class ElementPasses {
   /// Declares that a pass reads the directions of bins, as bin_lookup.glsl does.
   void readDirections(frame::PassBuilder& pass) const;
   /// Adds SKY and MEDIUM for a program that looks through bins, at the environment if `sky`, and declares
-  /// what it reads of the scene's medium. Returns whether that holds for the frame block, too.
+  /// what it reads of the scene's medium. Returns whether it also needs a block with the medium.
   bool readSky(frame::PassBuilder& pass, const TechniqueInputs& inputs, bool sky,
                std::map<std::string, std::string>& defines) const;
   /// Declares that a pass reads elements and links in the processor's memory.

@@ -136,7 +136,7 @@ LightPasses::Sent LightPasses::addDirectLight(const PassRequest& r, std::span<co
     defines["MEDIUM"] = "1";
     medium.define(defines);
     medium.declare(pass);
-    pass.read(r.inputs.handles.frame, Access::uniformBuffer, "FrameBlock", "the medium");
+    pass.read(r.inputs.handles.medium, Access::uniformBuffer, "FrameBlock", "the medium");
   }
   Sent result;
   result.first =
@@ -229,7 +229,7 @@ LightPasses::Sent LightPasses::reflect(const PassRequest& r, const Gathered& gat
       pass.write(sent(r, "outgoing"), Access::storageStore, "Next", "reflected by leaves, to be pulled up");
   std::map<std::string, std::string> defines;
   if (elements_.readSky(pass, r.inputs, gathered.sky, defines))
-    pass.read(r.inputs.handles.frame, Access::uniformBuffer, "FrameBlock", "the medium");
+    pass.read(r.inputs.handles.medium, Access::uniformBuffer, "FrameBlock", "the medium");
   const auto kernelHandle = elements_.program(pass, "reflect.comp.glsl", std::move(defines));
   pass.execute([this, kernelHandle, links](frame::PassContext& context) {
     gpu::Program& kernel = context.use(kernelHandle);
@@ -279,7 +279,7 @@ BufferHandle LightPasses::skyIrradiance(const PassRequest& r, BufferHandle bins)
       pass.write(perSlot(r, "environment's irradiance"), Access::storageStore, "Irradiance", "of leaves");
   std::map<std::string, std::string> defines;
   if (elements_.readSky(pass, r.inputs, true, defines))
-    pass.read(r.inputs.handles.frame, Access::uniformBuffer, "FrameBlock", "the medium");
+    pass.read(r.inputs.handles.medium, Access::uniformBuffer, "FrameBlock", "the medium");
   const auto kernelHandle = elements_.program(pass, "gather.comp.glsl", std::move(defines));
   pass.execute([this, kernelHandle, links](frame::PassContext& context) {
     gatherChunks(context, kernelHandle, links);

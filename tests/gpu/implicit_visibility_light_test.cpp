@@ -192,6 +192,37 @@ TEST_F(ImplicitVisibilityLightTest, AMediumTakesOfTheEnvironmentsLight) {
   expectLess(satin, Term::indirect, "glossy_bins", "4");
 }
 
+/// What a medium leaves of light depends on where the light and the surface are.
+TEST_F(ImplicitVisibilityLightTest, LightThroughAMediumIsKeptWhileOnlyTheCameraMoves) {
+  for (const bool grid : {false, true})
+    for (const char* bins : {"0", "4"}) {
+      scene::Scene scene = corner();
+      scene.environment = uniformSky(1);
+      test::fillWithFog(scene, grid);
+      render::Renderer renderer(device(), scene);
+      const render::TechniqueUse use =
+          technique("implicit_visibility", {{"bins", "8"}, {"longest_edge", "0.1"}, {"glossy_bins", bins}});
+      render::Settings asked = settings(64, 48, Term::indirect, {use});
+      asked.dynamic = false;
+      picture(renderer, asked, camera());
+      renderer.setCamera(scene::lookAt({1.3f, 1.1f, 2.5f}, {0, 0.5f, -0.3f}, 0.8f));
+      renderer.render();
+      int kept = 0, shown = 0;
+      for (const frame::PassReport& pass : renderer.explain()) {
+        if (pass.technique != "implicit_visibility" || pass.state == frame::PassState::leftOut) continue;
+        const bool shows = pass.name.starts_with("interpolate");
+        shown += shows && pass.state == frame::PassState::run;
+        if (!pass.name.starts_with("direct light") && !pass.name.starts_with("environment light") &&
+            !pass.name.starts_with("reflect") && !pass.name.starts_with("gather"))
+          continue;
+        EXPECT_EQ(pass.state, frame::PassState::cached) << pass.name << ", " << grid << ", " << bins;
+        ++kept;
+      }
+      EXPECT_GE(kept, 3);
+      EXPECT_EQ(shown, 1);
+    }
+}
+
 /// Core asks for V of 8 lights at a time, and the bounce for all: both look up the same bins.
 TEST_F(ImplicitVisibilityLightTest, BinsAreLookedUpOnceForEachOfManyLights) {
   constexpr int kLights = 11;

@@ -57,6 +57,27 @@ TEST_F(SurfaceCausticsTest, ABodyThatLiesInTwoViewsRefractsAsOne) {
   EXPECT_LT(relativeRms(ours, truth), 0.15);
 }
 
+/// Where light goes does not depend on who looks, in a medium or without one.
+TEST_F(SurfaceCausticsTest, RaysAreKeptWhileOnlyTheCameraMoves) {
+  for (const bool medium : {false, true}) {
+    scene::Scene scene = asset("glass_sphere");
+    if (!medium) scene.medium = {};
+    render::Renderer renderer(device(), scene);
+    render::Settings asked = settings(width, height, Term::caustic, {technique("surface_caustics")});
+    asked.dynamic = false;
+    picture(renderer, asked);
+    renderer.setCamera(scene::lookAt({0.6f, 4, 0.01f}, {0.6f, 0, 0}, 0.3f));
+    renderer.render();
+    int kept = 0;
+    for (const frame::PassReport& pass : renderer.explain()) {
+      if (pass.name != "caustic rays") continue;
+      EXPECT_EQ(pass.state, frame::PassState::cached) << "medium " << medium;
+      ++kept;
+    }
+    EXPECT_EQ(kept, 1);
+  }
+}
+
 /// A floor under a layer of index 1.8 that is seen head-on: of what the layer leaves to the diffuse part,
 /// Fresnel's term at the half vector takes ((n - 1) / (n + 1))^2, and less than 0.002 more (Schlick's (1 -
 /// v.h)^5 is at most 0.0022 there, at grazing incidence).

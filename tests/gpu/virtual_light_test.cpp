@@ -41,7 +41,7 @@ class VirtualLightTest : public OncePerRenderer<SharedProgramsTest> {
     gpuScene.update(pose, scene::frameBounds(pose.bounds), {64, 64}, 0);
     FrameServices services;
     services.add<shadow::ShadowMapService>(device(), gpuScene);
-    auto& service = services.add<indirect::VirtualLightService>(device(), scene);
+    auto& service = services.add<indirect::VirtualLightService>(scene);
     frame::ResourcePool pool(device());
     frame::FrameGraph graph;
     const SceneHandles handles = gpuScene.import(graph);
