@@ -90,7 +90,11 @@ bool VisibleScene::update(const scene::Pose& pose, std::span<const Bounds> insta
     for (const glm::vec4& plane : planes) {
       if (!seen.solid.empty()) seen.solid.clip(plane);
     }
-    if (!seen.solid.empty()) ++visibleCount_;
+    if (seen.solid.empty()) continue;
+    seen.corners.clear();
+    for (const vec3& p : seen.solid.corners())
+      if (std::ranges::find(seen.corners, p) == seen.corners.end()) seen.corners.push_back(p);
+    ++visibleCount_;
   }
   return true;
 }

@@ -22,7 +22,8 @@ struct ScenePart {
 
 /// Holds a convex solid that encloses all that the camera sees of a part.
 struct VisiblePart {
-  Convex solid;  ///< world
+  Convex solid;                    ///< world
+  std::vector<glm::vec3> corners;  ///< of the solid, about once each
   uint32_t instance = 0;
 };
 

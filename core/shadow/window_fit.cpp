@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <iterator>
 #include <limits>
 
 #include "core/shadow/private/pyramid_fit.h"
@@ -79,6 +80,31 @@ MapWindow nothing() {
   return {vec2(kInfinite), vec2(-kInfinite), kInfinite, -kInfinite};
 }
 
+/// Whether the window holds all of the points, so that nothing between them widens it.
+bool holds(const MapWindow& window, bool perspective, std::span<const vec3> points) {
+  return std::ranges::all_of(points, [&](const vec3& p) {
+    if (p.z < window.near || p.z > window.far) return false;
+    const vec2 at = perspective ? vec2(p) / p.z : vec2(p);
+    return at.x >= window.low.x && at.y >= window.low.y && at.x <= window.high.x && at.y <= window.high.y;
+  });
+}
+
+/// What clipTo() leaves of all that lies between some points.
+enum class Left { all, some, nothing };
+Left leftOf(std::span<const vec3> points, const Wedge& wedge, float near, float far) {
+  Left left = Left::all;
+  const auto cut = [&](const auto& height) {
+    const auto kept = std::ranges::count_if(points, [&](const vec3& p) { return height(p) >= 0; });
+    if (kept < std::ssize(points)) left = kept > 0 ? Left::some : Left::nothing;
+    return left == Left::nothing;
+  };
+  if (cut([&](const vec3& p) { return p.z - near; }) || cut([&](const vec3& p) { return far - p.z; }))
+    return left;
+  for (const vec4& plane : wedge.planes)
+    if (cut([&](const vec3& p) { return glm::dot(vec3(plane), p) + plane.w; })) break;
+  return left;
+}
+
 vec3 inAxes(const MapAxes& axes, const vec3& r) {
   return {glm::dot(axes.x, r), glm::dot(axes.y, r), glm::dot(axes.z, r)};
 }
@@ -104,6 +130,12 @@ bool fitWindow(const MapEye& eye, const VisibleScene& scene, uint32_t skip, cons
   const Wedge limits = pyramid(eye, whole);
   for (const VisiblePart& part : scene.visible()) {
     if (part.instance == skip) continue;
+    const size_t first = receivers.size();
+    for (const vec3& p : part.corners) receivers.push_back(local(p));
+    const Left left = leftOf(std::span(receivers).subspan(first), limits, near, whole.far);
+    if (left == Left::all) continue;
+    receivers.resize(first);
+    if (left == Left::nothing) continue;
     solid.assign(part.solid, local);
     clipTo(solid, limits, near, whole.far);
     receivers.insert(receivers.end(), solid.corners().begin(), solid.corners().end());
@@ -117,6 +149,8 @@ bool fitWindow(const MapEye& eye, const VisibleScene& scene, uint32_t skip, cons
     if (part.instance == skip) continue;
     std::array<vec3, 8> corners = boxCorners(part.bounds);
     for (vec3& p : corners) p = local(p);
+    if (holds(window, eye.perspective, corners) || leftOf(corners, lines, near, far) == Left::nothing)
+      continue;
     solid.setBox(corners);
     clipTo(solid, lines, near, far);
     for (const vec3& p : solid.corners()) add(window, eye.perspective, p);

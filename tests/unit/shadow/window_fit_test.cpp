@@ -3,6 +3,7 @@
 
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <cstring>
 #include <optional>
 #include <random>
@@ -401,6 +402,23 @@ TEST(VisibleSceneOf, FollowsWhatMovedAndIsLeftAsItIsOtherwise) {
   expectToFollow("an instance that is deformed now");
   cloud.boxes[1].high.y += 1;
   expectToFollow("its bounds");
+}
+
+TEST(VisibleSceneOf, CornersOfWhatIsSeenAreThoseOfItsFaces) {
+  const Cloud cloud(1);
+  VisibleScene visible(cloud.scene);
+  visible.update(cloud.pose, cloud.boxes, scene::lookAt({0, 2, 8}, {0, 1, 0}, 0.6f), 1.3f);
+  int whole = 0, cut = 0;
+  for (const VisiblePart& part : visible.visible()) {
+    const std::vector<vec3>& solid = part.solid.corners();
+    for (const vec3& p : solid) EXPECT_NE(std::ranges::find(part.corners, p), part.corners.end());
+    for (const vec3& p : part.corners) EXPECT_NE(std::ranges::find(solid, p), solid.end());
+    const bool isWhole = solid.size() == 24;  // six faces of four
+    EXPECT_TRUE(!isWhole || part.corners.size() == 8) << part.corners.size();
+    ++(isWhole ? whole : cut);
+  }
+  EXPECT_GT(whole, 5);
+  EXPECT_GT(cut, 5);
 }
 
 TEST(WindowFitOf, CubesAndWhatSeesEverythingCoversTheScene) {
