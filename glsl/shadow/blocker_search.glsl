@@ -51,8 +51,8 @@ void extend_kernel(inout ShadowKernel kernel, vec2 place) {
   kernel.high = max(kernel.high, place);
 }
 
-// Extends a kernel that no face has cut to where the view sees the receiver; then its face cuts it, unless the view is the light's
-// only one (`whole`). seen: shadow_kernel()'s. False: nothing of it lies in this view.
+// Extends a kernel that no face has cut to where the view sees the receiver; then its face cuts it, unless it is to stay `whole`.
+// seen, whole: shadow_kernel()'s. False: nothing of it lies in this view.
 bool extend_to_receiver(ShadowView view, vec3 receiver, bool whole, bool seen, inout ShadowKernel kernel) {
   vec3 r = shadow_local(view, receiver);
   bool there = seen || r.z > 0.0 || view.projection != shadow_perspective;
@@ -75,7 +75,7 @@ bool kernel_in_face(inout ShadowCursor cursor, VisibilityQuery q, uint face, flo
 #if !ONE_VIEW
   if (face != cursor.face) cursor = shadow_cursor_at(q, face);
 #endif
-  bool whole = q.maps.faces == shadow_faces_single;
+  bool whole = shadow_views_apart(q.maps.faces);
   bool reaching = searching && map_from_beneath(cursor.view, cursor.in_map);
   bool seen = shadow_kernel(cursor.view, q.light, q.position, gap, whole || reaching, least, kernel);
   if (reaching) seen = extend_to_receiver(cursor.view, q.position, whole, seen, kernel);

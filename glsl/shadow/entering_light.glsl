@@ -42,7 +42,8 @@ bool seen_at(EntryPlace place, out ivec2 pixel) {
 #if LIGHT_COUNT
 // E / pi of one light without occlusion, W/(sr m^2).
 vec3 entering_unshadowed(Light light, DiffusionBoundary boundary, vec3 p, vec3 n) {
-  if (light.type == light_rectangle || light_is_distant_rectangle(light)) {
+  bool distant = light_is_distant_rectangle(light) && (light.flags & light_flag_centre) == 0u;
+  if (light.type == light_rectangle || distant) {
     if (!rectangle_emits_towards(light, p)) return vec3(0.0);
     Rectangle r = rectangle_from(light, p);
     vec3 towards = rectangle_vector_irradiance(r, rectangle_above(r, n));

@@ -29,7 +29,7 @@ LIMN_FN void widen_kernel(LIMN_INOUT(ShadowKernel) kernel, float least) {
 
 // The kernel `gap` metres nearer to the light than the receiver, along the light's axis: the counted part of the light
 // (LightView::low, high) scaled down by gap / depth, projected, and boxed (framework, steps 1 and 3). False: nothing of
-// it lies in this view. whole: the view is the light's only one, so what lies beyond its edge is unoccluded. least: texels,
+// it lies in this view. whole: shadow_views_apart(), so that what lies beyond its edge is unoccluded. least: texels,
 // least_kernel_width or more, that a kernel is wide before the face cuts it: one widened after that would reach over the edge
 // again, where nothing seems to block.
 LIMN_FN bool shadow_kernel(ShadowView view, LightView light, vec3 receiver, float gap, bool whole, float least,

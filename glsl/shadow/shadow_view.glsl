@@ -52,6 +52,10 @@ LIMN_FN uint shadow_face_count(uint faces) {
   return faces == shadow_faces_single ? 1u : faces == shadow_faces_pair ? 2u : faces == shadow_faces_hemicube ? 5u : 6u;
 }
 
+// Whether no view of a light goes on where another ends, as those of cubes and half cubes do: what lies beyond the edge of one then
+// lies in none, where nothing blocks.
+LIMN_FN bool shadow_views_apart(uint faces) { return faces == shadow_faces_single || faces == shadow_faces_pair; }
+
 // A point of space in a view.
 struct ShadowPoint {
   vec2 uv;      // [0, 1]^2 inside the map

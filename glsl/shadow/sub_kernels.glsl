@@ -42,7 +42,7 @@ struct KernelFamily {
   ShadowView view;
   LightView light;
   vec3 receiver;
-  bool whole;  // the view is the light's only one
+  bool whole;  // shadow_kernel()'s
 #endif
   float nearest;  // stored in its kernels, quanta
   int size;       // texels per side of the map
@@ -67,7 +67,7 @@ KernelFamily kernel_family(ShadowCursor cursor, VisibilityQuery q) {
   f.view = cursor.view;
   f.light = q.light;
   f.receiver = q.position;
-  f.whole = q.maps.faces == shadow_faces_single;
+  f.whole = shadow_views_apart(q.maps.faces);
 #endif
   f.nearest = 0.0;
   f.size = int(cursor.view.size);

@@ -204,7 +204,7 @@ bool shadow_kernel_in_face(inout ShadowCursor cursor, VisibilityQuery q, uint fa
 #if !ONE_VIEW
   if (face != cursor.face) cursor = shadow_cursor_at(q, face);
 #endif
-  return shadow_kernel(cursor.view, q.light, q.position, gap, q.maps.faces == shadow_faces_single, least, kernel);
+  return shadow_kernel(cursor.view, q.light, q.position, gap, shadow_views_apart(q.maps.faces), least, kernel);
 }
 
 #endif  // LIMN_VISIBILITY_GLSL

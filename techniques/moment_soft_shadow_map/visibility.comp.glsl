@@ -47,7 +47,7 @@ MomentBlockers cell_blockers(ShadowCursor cursor, ShadowKernel cell, out bool be
 // How many texels of low..high lie in the cone to the light where they are, `own_gap` before the receiver.
 float texels_in_cone(ShadowCursor cursor, VisibilityQuery q, vec2 low, vec2 high, float own_gap) {
   ShadowKernel own;
-  bool whole = q.maps.faces == shadow_faces_single;
+  bool whole = shadow_views_apart(q.maps.faces);
   if (!shadow_kernel(cursor.view, q.light, q.position, own_gap, whole, least_kernel_width, own)) return 0.0;
   float blur = max(search_blur, least_search_blur);
   vec2 inside = max(min(high, own.high + blur) - max(low, own.low - blur), vec2(0.0));

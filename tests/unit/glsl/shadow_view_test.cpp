@@ -98,6 +98,15 @@ TEST(ShadowView, FacesOfACubeSeeEveryDirectionOnce) {
   }
 }
 
+/// What lies before a light beyond the edge of its first view is seen by another face of a cube or half cube.
+TEST(ShadowView, OnlyFacesOfCubesGoOnWhereAnotherEnds) {
+  const ShadowView first = view(shadow_perspective);
+  const vec3 beyond = first.origin + shadow_world_offset(first, {1.1f, 0, 1});
+  for (const uint32_t faces :
+       {shadow_faces_single, shadow_faces_pair, shadow_faces_hemicube, shadow_faces_cube})
+    EXPECT_EQ(shadow_views_apart(faces), shadow_face(faces, first, beyond) == 0) << faces;
+}
+
 /// The cone from a receiver to a square light, cut at depth z, is S (d - z) / d wide; the map is 2 z
 /// tan(theta) wide there.
 TEST(ShadowView, KernelWidthIsThatOfTheCone) {
