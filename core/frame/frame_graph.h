@@ -356,7 +356,8 @@ class LIMN_API FrameGraph {
   void touch(BufferHandle imported);
   /// Forgets every cached result (after a shader was reloaded, for example).
   void invalidate();
-  /// Says whether execution should stop; asked before each pass that runs.
+  /// Says whether execution should stop; asked before each pass that runs. A GPU may have all earlier passes
+  /// still to do then, as nothing waits for it: to stop what takes it long, this waits itself (glFinish).
   using Cancelled = std::function<bool()>;
   /// Runs one frame. Needs prepare() and its context current. When a pass throws, all cached results are
   /// forgotten. Returns false if `cancelled` stopped it: the outputs are then invalid, and of the cached

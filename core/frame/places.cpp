@@ -164,7 +164,10 @@ gpu::Program& PassContext::use(ProgramHandle handle) const {
   if (use.placesOf != used.serial()) {
     std::vector<std::string> problems;
     findPlaces(graph, use, problems);
-    if (!problems.empty()) throw Error(joined(problems, "and"));
+    if (!problems.empty()) {
+      use.placesOf = 0;  // the next frame looks again, and is refused again
+      throw Error(joined(problems, "and"));
+    }
   }
   if (graph.program == handle.index) return used;  // since this pass began: all is where it was
   used.use();

@@ -51,7 +51,7 @@ class LIMN_API Object {
 
 enum class BufferUse {
   fixed,    ///< written by the GPU or once at creation
-  updated,  ///< rewritten from the CPU with update(), at most once a frame
+  updated,  ///< rewritten from the CPU with update(), before the frames that read it
 };
 
 class LIMN_API Buffer : public Object {

@@ -8,8 +8,8 @@
 // follows from its name: .vert.glsl .frag.glsl .geom.glsl .comp.glsl. The library writes "#version 450 core",
 // the defines, then the expanded text with #line directives; a compile error is reported as Error with the
 // original "file:line: message" of the diagnostics. A LIMN_ macro that an #if tests without asking defined()
-// must be defined, or the compilation fails. Warnings of the compiler are errors in debug contexts only where
-// they name a limn file.
+// must be defined, or the compilation fails. Warnings of the compiler are errors in debug contexts of
+// software renderers, where they name a limn file.
 #pragma once
 
 #include <filesystem>

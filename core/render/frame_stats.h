@@ -83,8 +83,9 @@ LIMN_API std::vector<double> timeFrames(Renderer& renderer, int frames, int warm
 LIMN_API std::vector<double> timeOwnPasses(Renderer& renderer, std::string_view technique, int frames,
                                            int warmup, const Playback& playback = {});
 
-/// Renders `warmup` frames, then `frames` timed ones as a whole, then as many with pass timing. The camera
-/// counts as moved in every frame; geometry and lights too unless the renderer is configured static.
+/// Renders `warmup` frames, then `frames` timed ones as a whole, then as many with pass timing. Everything is
+/// computed in every frame; where the renderer is configured static, what depends on geometry, lights or the
+/// camera alone is kept as long as these do not change.
 LIMN_API FrameStats measure(Renderer& renderer, int frames, int warmup = 3, const Playback& playback = {});
 
 LIMN_API std::string toJson(const FrameStats& stats);

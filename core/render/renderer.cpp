@@ -20,6 +20,7 @@ void Renderer::Implementation::dropGraph() {
 }
 
 bool Renderer::Implementation::switched() const {
+  if (emitting.size() != pose.lights.size()) return true;  // of a frame before the last, which failed
   for (size_t i = 0; i < emitting.size(); ++i)
     if (emitting[i] != emits(i)) return true;
   return false;
@@ -56,7 +57,9 @@ bool Renderer::Implementation::render(frame::Timing timing, const frame::FrameGr
   }
   if (rebuild) rebuildGraph();
   if (settings.dynamic) graph->invalidate();
-  return graph->execute(timing, cancelled);
+  const bool whole = graph->execute(timing, cancelled);
+  if (!whole) services.givenUp();
+  return whole;
 }
 
 Renderer::Renderer(gpu::Device& device, const scene::Scene& scene, std::filesystem::path shaderOverride)
@@ -115,6 +118,7 @@ void Renderer::setCompileProgress(frame::FrameGraph::CompileProgress progress) {
 
 void Renderer::finish() {
   implementation_->device.gl().Finish();
+  implementation_->services.waited();
 }
 
 const scene::Pose& Renderer::pose() {

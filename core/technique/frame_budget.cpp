@@ -71,16 +71,26 @@ const FrameBudget& FrameBudgetService::request(std::string_view technique, doubl
 
 /// The first frame of a graph compiles and allocates.
 void FrameBudgetService::begin() {
-  last_.reset();
+  start_.reset();
 }
 
 bool FrameBudgetService::update(frame::FrameGraph&, const scene::Pose&) {
-  const auto now = std::chrono::steady_clock::now();
-  if (last_)
+  const Clock::time_point now = Clock::now();
+  if (start_)
     for (auto& [technique, entry] : entries_)
-      entry.budget.addFrame(std::chrono::duration<double, std::milli>(now - *last_).count());
-  last_ = now;
+      entry.budget.addFrame(std::chrono::duration<double, std::milli>(end_.value_or(now) - *start_).count());
+  start_ = now;
+  end_.reset();
   return false;
+}
+
+/// The last time counts: who shows progress waits before each pass as well.
+void FrameBudgetService::waited() {
+  end_ = Clock::now();
+}
+
+void FrameBudgetService::givenUp() {
+  start_.reset();
 }
 
 }  // namespace limn

@@ -51,7 +51,8 @@ class LIMN_API FrameBudget {
 };
 
 /// Holds the budgets of a renderer's techniques, from one graph to the next, and measures frames by the clock
-/// between their starts: on the frame path nothing waits for the GPU.
+/// between their starts: on the frame path nothing waits for the GPU. Where a program waits for the end of a
+/// frame itself, what it does afterwards does not count. Frames that are given up have no time.
 class LIMN_API FrameBudgetService : public FrameService {
  public:
   static constexpr const char* serviceName = "frame budgets";
@@ -68,9 +69,13 @@ class LIMN_API FrameBudgetService : public FrameService {
   };
   void begin() override;
   bool update(frame::FrameGraph& graph, const scene::Pose& pose) override;
+  void waited() override;
+  void givenUp() override;
 
+  using Clock = std::chrono::steady_clock;
   std::map<std::string, Entry, std::less<>> entries_;
-  std::optional<std::chrono::steady_clock::time_point> last_;  ///< start of the last frame; none: not counted
+  std::optional<Clock::time_point> start_;  ///< of the last frame; none: it does not count
+  std::optional<Clock::time_point> end_;    ///< of the last frame; none: the start of the next one
 };
 
 }  // namespace limn

@@ -19,6 +19,10 @@ bool FrameService::update(frame::FrameGraph&, const scene::Pose&) {
   return false;
 }
 
+void FrameService::waited() {}
+
+void FrameService::givenUp() {}
+
 FrameServices::FrameServices() = default;
 FrameServices::~FrameServices() = default;
 FrameServices::FrameServices(FrameServices&&) noexcept = default;
@@ -45,6 +49,14 @@ bool FrameServices::update(frame::FrameGraph& graph, const scene::Pose& pose) {
   bool rebuild = false;
   for (const Entry& entry : entries_) rebuild = entry.service->update(graph, pose) || rebuild;
   return rebuild;
+}
+
+void FrameServices::waited() {
+  for (const Entry& entry : entries_) entry.service->waited();
+}
+
+void FrameServices::givenUp() {
+  for (const Entry& entry : entries_) entry.service->givenUp();
 }
 
 void FrameServices::add(const std::type_info& type, const char* name, std::unique_ptr<FrameService> service) {

@@ -8,6 +8,8 @@
 //       inputs.service<shadow::ShadowMapService>().request(lights, {});  // the same in a technique
 //     }
 //     if (services.update(graph, pose)) ...  // before each frame; true: build the graph again
+//     services.waited();                     // when the GPU has done all work that was asked of it
+//     services.givenUp();                    // after a frame of which not all passes ran
 //
 // A service receives the graph only by these calls and keeps no pointer to it, so that no pointer can dangle.
 #pragma once
@@ -61,6 +63,11 @@ class LIMN_API FrameService {
   /// last. Brings buffers to `pose` and touches in the graph what changed. Returns true to request that the
   /// graph is built again.
   virtual bool update(frame::FrameGraph& graph, const scene::Pose& pose);
+  /// Notes that the program has waited until the GPU had done all work that was asked of it. A frame may have
+  /// no such moment, or several, also before its last pass.
+  virtual void waited();
+  /// Notes that the frame of the last update() was given up before all of its passes ran.
+  virtual void givenUp();
 
   std::optional<FrameContext> context_;
 };
@@ -113,6 +120,10 @@ class LIMN_API FrameServices {
   /// Calls FrameService::update() of all services. Returns true when a service requests that the graph is
   /// built again.
   bool update(frame::FrameGraph& graph, const scene::Pose& pose);
+  /// Calls FrameService::waited() of all services.
+  void waited();
+  /// Calls FrameService::givenUp() of all services.
+  void givenUp();
 
  private:
   struct Entry {

@@ -206,6 +206,19 @@ TEST_F(FrameGraphNames, PlacesAreFoundAgainWhenShadersWereReloaded) {
   }
   graph.execute();
   EXPECT_THAT(read(graph.texture(to)), Each(2.f));
+  // What the pass does not name is refused in every frame, not in the first alone.
+  write(
+      "layout(local_size_x = 8, local_size_y = 8) in;\n"
+      "layout(r32f) writeonly uniform image2D target;\n"
+      "uniform sampler2D source;\n"
+      "uniform sampler2D unnamed;\n"
+      "void main() { ivec2 p = ivec2(gl_GlobalInvocationID.xy);\n"
+      "  imageStore(target, p, texelFetch(source, p, 0) + texelFetch(unnamed, p, 0)); }\n",
+      6);
+  EXPECT_EQ(shaders().reload().reloaded, 1);
+  for (int frame = 0; frame < 2; ++frame)
+    EXPECT_THAT(errorOf([&] { graph.execute(); }), HasSubstr("uses the sampler 'unnamed', but pass 'use'"))
+        << "frame " << frame;
 }
 
 }  // namespace

@@ -1,6 +1,8 @@
 // Frame graphs that run: results, memory, cache.
 #include <gmock/gmock.h>
 
+#include <array>
+#include <map>
 #include <numeric>
 
 #include "tests/gpu/frame_graph_harness.h"
@@ -120,6 +122,134 @@ TEST_F(FrameGraphGpu, cachedPassesRunAgainWhenTheirInputsChange) {
   graph.invalidate();
   graph.execute();
   EXPECT_THAT(states(graph), ElementsAre("first run", "second run", "other run", "result run"));
+}
+
+constexpr gpu::EmbeddedSource kUpdatedSources[] = {
+    {"held.glsl",
+     "#ifdef HELD_COUNT\n"
+     "layout(std140) uniform Held { uvec4 held[HELD_COUNT]; };\n"
+     "#else\n"
+     "layout(std430) readonly buffer Held { uvec4 held[]; };\n"
+     "#endif\n"},
+    {"seen.comp.glsl",
+     "#include \"held.glsl\"\n"
+     "layout(local_size_x = 16) in;\n"
+     "layout(std430) writeonly buffer Seen { uvec4 seen[]; };\n"
+     "void main() { seen[gl_GlobalInvocationID.x] = held[gl_GlobalInvocationID.x]; }\n"},
+    {"seen.vert.glsl",
+     "#include \"held.glsl\"\n"
+     "layout(location = 0) flat out uint value;\n"
+     "void main() {\n"
+     "  gl_Position = vec4(4.0 * vec2(gl_VertexID & 1, gl_VertexID >> 1) - 1.0, 0.0, 1.0);\n"
+     "  value = held[gl_VertexID].x;\n"
+     "}\n"},
+    {"seen.frag.glsl",
+     "layout(location = 0) flat in uint value;\n"
+     "layout(location = 0) out uint seen;\n"
+     "void main() { seen = value; }\n"},
+};
+
+/// Passes that say what they read of a buffer of values.
+class UpdatedBuffers : public FrameGraphGpu {
+ protected:
+  using Value = std::array<uint32_t, 4>;
+  static constexpr uint32_t kCount = 16;
+  struct Read {
+    Access access;
+    bool drawn;  ///< by a vertex shader
+  };
+  using Seen = std::function<std::vector<uint32_t>()>;
+
+  static std::vector<Value> full(uint32_t value) {
+    return std::vector<Value>(kCount, Value{value, value, value, value});
+  }
+
+  static Seen see(FrameGraph& graph, BufferHandle held, const Read& read) {
+    std::map<std::string, std::string> defines;
+    if (read.access == Access::uniformBuffer) defines["HELD_COUNT"] = std::to_string(kCount);
+    PassBuilder pass = graph.addPass("see");
+    pass.cacheable().read(held, read.access, "Held", "");
+    return read.drawn ? draw(graph, pass, std::move(defines)) : copy(graph, pass, std::move(defines));
+  }
+
+ private:
+  static Seen copy(FrameGraph& graph, PassBuilder& pass, std::map<std::string, std::string> defines) {
+    const BufferHandle seen =
+        pass.write(graph.createBuffer("seen", {kCount * sizeof(Value)}), Access::storageStore, "Seen", "");
+    const ProgramHandle run = pass.program({{"techniques/updated/seen.comp.glsl"}, std::move(defines)});
+    pass.execute([run](PassContext& context) {
+      context.use(run);
+      context.dispatch(kCount, 1, 1, kCount, 1);
+    });
+    graph.output(seen);
+    return [&graph, seen] {
+      std::vector<uint32_t> values(4 * kCount);
+      graph.buffer(seen).read(0, values.data(), values.size() * sizeof(uint32_t));
+      return values;
+    };
+  }
+
+  static Seen draw(FrameGraph& graph, PassBuilder& pass, std::map<std::string, std::string> defines) {
+    const TextureHandle seen =
+        pass.write(graph.createTexture("seen", {.format = GL_R32UI, .width = kSize, .height = kSize}),
+                   Access::colourAttachment, "");
+    const ProgramHandle run = pass.program(
+        {{"techniques/updated/seen.vert.glsl", "techniques/updated/seen.frag.glsl"}, std::move(defines)});
+    pass.execute([run, seen](PassContext& context) {
+      const gpu::VertexArray empty(device(), {});
+      context.bindFramebuffer({{seen}});
+      context.use(run);
+      context.gl().BindVertexArray(empty.id());
+      context.gl().DrawArrays(GL_TRIANGLES, 0, 3);
+    });
+    graph.output(seen);
+    return [&graph, seen] {
+      std::vector<uint32_t> values(kSize * kSize);
+      graph.texture(seen).read(0, GL_RED_INTEGER, GL_UNSIGNED_INT, values.data(),
+                               values.size() * sizeof(uint32_t));
+      return values;
+    };
+  }
+};
+
+/// Views of shadow maps are such a buffer: maps are drawn with it as a storage block, and read with it as a
+/// uniform block. What a frame that is given up wrote there is written over before anybody reads it.
+TEST_F(UpdatedBuffers, areReadAsTheyWereUpdatedLast) {
+  shaders().mount("techniques/updated/", kUpdatedSources);
+  constexpr Read uniform{Access::uniformBuffer, false}, storage{Access::storageLoad, false},
+      drawn{Access::storageLoad, true};
+  const std::vector<std::vector<Read>> all{
+      {uniform}, {storage}, {drawn}, {storage, uniform}, {drawn, uniform}};
+  for (const std::vector<Read>& reads : all) {
+    auto held = gpu::Buffer::of<Value>(device(), "held", full(0), gpu::BufferUse::updated);
+    FrameGraph graph;
+    const BufferHandle imported = graph.importBuffer("held", held);
+    const auto update = [&](uint32_t value) {
+      held.update(0, full(value).data(), kCount * sizeof(Value));
+      graph.touch(imported);
+    };
+    graph.output(set(graph, "first", 1));
+    std::vector<Seen> seen;
+    for (const Read& read : reads) seen.push_back(see(graph, imported, read));
+    prepare(graph);
+    graph.execute();
+    for (size_t ranBefore = 0; ranBefore <= reads.size(); ++ranBefore) {  // passes of what is given up
+      for (uint32_t unread = 0; unread < 4; ++unread) {
+        for (uint32_t i = 0; i < unread; ++i) {
+          update(100 + i);
+          size_t left = ranBefore;
+          EXPECT_FALSE(graph.execute(Timing::off, [&left] { return left-- == 0; }));
+        }
+        const uint32_t value = unread % 2;
+        update(value);
+        EXPECT_TRUE(graph.execute());
+        for (size_t i = 0; i < seen.size(); ++i)
+          EXPECT_THAT(seen[i](), Each(value))
+              << name(reads[i].access) << (reads[i].drawn ? " of vertices" : "") << ", pass " << i << " of "
+              << seen.size() << ", after " << unread << " frames given up behind " << ranBefore << " passes";
+      }
+    }
+  }
 }
 
 TEST_F(FrameGraphGpu, aCacheablePassAfterOneThatAlwaysRunsIsNeverCached) {

@@ -15,8 +15,8 @@ struct ShaderStage {
 };
 
 /// Returns the name of the linked program, which the caller owns. Throws Error with one line that gives the
-/// original file and line of the diagnostics; `label` names the program in it. In a debug context a warning
-/// about a limn file is an error.
+/// original file and line of the diagnostics; `label` names the program in it. In a debug context of a
+/// software renderer a warning about a limn file is an error.
 GLuint linkProgram(Device& device, const std::string& label, std::span<const ShaderStage> stages);
 
 }  // namespace limn::gpu

@@ -5,6 +5,8 @@
 
 #include <cmath>
 
+#include "core/scene/scene.h"
+
 namespace limn {
 namespace {
 
@@ -55,6 +57,29 @@ TEST(FrameBudget, SingleSlowFramesChangeNothing) {
   FrameBudget budget(20, kWork);
   for (int i = 0; i < 200; ++i) budget.addFrame(i % 5 == 0 ? 1000 : 10);
   EXPECT_EQ(budget.position(), 4);
+}
+
+/// Draws frames that take longer than any budget of `technique`, each of which ends in that way.
+template <class End>
+const FrameBudget& budgetAfter(FrameServices& services, std::string_view technique, const End& end) {
+  frame::FrameGraph graph;
+  const scene::Pose pose;
+  const FrameBudget& budget = services.get<FrameBudgetService>().request(technique, 1e-12, kWork);
+  for (int frame = 0; frame < 20; ++frame) {
+    EXPECT_FALSE(services.update(graph, pose));
+    end();
+  }
+  return budget;
+}
+
+TEST(FrameBudgetService, FramesThatAreGivenUpHaveNoTime) {
+  FrameServices services;
+  services.add<FrameBudgetService>();
+  EXPECT_EQ(budgetAfter(services, "waits for nothing", [] {}).target(), 0);
+  EXPECT_EQ(budgetAfter(services, "waits for its frames", [&] { services.waited(); }).target(), 0);
+  EXPECT_EQ(budgetAfter(services, "gives up", [&] { services.givenUp(); }).target(), 4);
+  services.waited();  // of a frame that was given up
+  EXPECT_EQ(budgetAfter(services, "gives up", [&] { services.givenUp(); }).target(), 4);
 }
 
 }  // namespace

@@ -38,6 +38,8 @@ class Noise : public FrameService {
     log_.push_back("noise.update");
     return !pose.lights.empty();
   }
+  void waited() override { log_.push_back("noise.waited"); }
+  void givenUp() override { log_.push_back("noise.givenUp"); }
 
   Log& log_;
   frame::BufferHandle made_;
@@ -87,6 +89,16 @@ TEST(FrameServices, BeginAndUpdateInTheOrderInWhichTheyWereAdded) {
   pose.lights.emplace_back();
   EXPECT_TRUE(services.update(graph, pose)) << "one asks for the graph to be rebuilt";
   EXPECT_THAT(log, testing::ElementsAre("noise.begin", "smooth.begin", "noise.update", "noise.update"));
+}
+
+TEST(FrameServices, AreToldHowFramesEnd) {
+  Log log;
+  FrameServices services;
+  services.add<Noise>(log);
+  services.add<Smooth>(log);
+  services.waited();
+  services.givenUp();
+  EXPECT_THAT(log, testing::ElementsAre("noise.waited", "noise.givenUp"));
 }
 
 TEST(FrameServices, AreFoundByTypeAndShareWhatTheyMadeInAGraph) {
