@@ -108,7 +108,7 @@ void Bodies::gatherPieces(const Surfels& surfels) {
   }
 }
 
-/// Sets the bounds of pieces and the middles of holes.
+/// Sets the bounds of pieces, and of blocks of them, and the middles of holes.
 void Bodies::update(const Surfels& surfels) {
   tbb::parallel_for(size_t{0}, pieces_.size(), [&](size_t i) {
     Piece& piece = pieces_[i];
@@ -121,6 +121,12 @@ void Bodies::update(const Surfels& surfels) {
   std::ranges::fill(holes_, glm::vec4(0));
   for (const Rim& rim : rims_) holes_[rim.hole] += glm::vec4(surfels.vertices[rim.surfel], 1);
   std::ranges::sort(fromLeft_, {}, [&](uint32_t i) { return pieces_[i].bounds.low.x; });
+  blocks_.assign((fromLeft_.size() + kBlock - 1) / kBlock, {glm::vec3(1e30f), glm::vec3(-1e30f)});
+  for (size_t i = 0; i < fromLeft_.size(); ++i) {
+    Box& block = blocks_[i / kBlock];
+    block.low = glm::min(block.low, pieces_[fromLeft_[i]].bounds.low);
+    block.high = glm::max(block.high, pieces_[fromLeft_[i]].bounds.high);
+  }
 }
 
 std::array<glm::vec3, 3> Bodies::corners(const Surfels& surfels, uint32_t triangle) const {
@@ -202,13 +208,17 @@ void Bodies::find(const Surfels& surfels, Piece& body) const {
     body.inside.insert(body.inside.end(), body.queries.begin(), body.queries.end());
     body.queries.clear();
   };
-  for (const uint32_t other : fromLeft_) {
-    const Piece& piece = pieces_[other];
-    if (piece.bounds.low.x > body.bounds.high.x) break;
+  const auto askPiece = [&](const Piece& piece) {
     const bool own = &piece == &body;
-    if ((!own && body.open()) || apart(piece.bounds, body.bounds)) continue;
+    if ((!own && body.open()) || apart(piece.bounds, body.bounds)) return;
     for (uint32_t k = piece.surfels.first; k < piece.surfels.end; ++k)
       ask(order_[k], surfels.positions[order_[k]], own ? kCentreIn : kInOther);
+  };
+  for (size_t first = 0; first < fromLeft_.size(); first += kBlock) {
+    if (pieces_[fromLeft_[first]].bounds.low.x > body.bounds.high.x) break;
+    if (apart(blocks_[first / kBlock], body.bounds)) continue;
+    for (size_t i = first; i < std::min(first + kBlock, fromLeft_.size()); ++i)
+      askPiece(pieces_[fromLeft_[i]]);
   }
   answer();
   for (const Query& q : body.inside)

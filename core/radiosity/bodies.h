@@ -66,6 +66,9 @@ class LIMN_API Bodies {
   /// Holds corners: surfels, or behind them all the middles of holes.
   using Triangle = std::array<uint32_t, 3>;
 
+  /// Pieces that are passed over together where none of them meets a body.
+  static constexpr size_t kBlock = 32;
+
   void gatherPieces(const Surfels& surfels);
   void update(const Surfels& surfels);
   double volume(const Surfels& surfels, const Piece& piece) const;
@@ -85,6 +88,7 @@ class LIMN_API Bodies {
   std::vector<Rim> rims_;
   std::vector<glm::vec4> holes_;         ///< sums of their outlines' vertices, and how many
   std::vector<uint32_t> fromLeft_;       ///< pieces by their bounds' low x
+  std::vector<Box> blocks_;              ///< bounds of each kBlock pieces of fromLeft_
   std::vector<unsigned char> enclosed_;  ///< of each surfel: what is known of it
   struct Move {
     uint32_t from, to;

@@ -15,23 +15,35 @@ namespace {
 /// bins: nine of them or more lie across a bin, so that those at its edge hardly matter.
 constexpr int kWholePixels = 64;
 
+/// Parts of a map's rows that are summed up by themselves, so that sums do not depend on how many cores there
+/// are.
+constexpr int kBands = 32;
+
 /// Returns the mean of the pixels whose centres lie in each bin.
 std::vector<glm::vec4> meansOfPixels(const scene::Environment& map, const ElementSpace& space, uint32_t n) {
-  std::vector<glm::dvec4> sums(size_t{6} * n * n, glm::dvec4(0));  // w: solid angle
-  for (int y = 0; y < map.height; ++y) {
-    const double solidAngle = double(glsl::equirectangular_pixel_solid_angle(y, map.width, map.height));
-    for (int x = 0; x < map.width; ++x) {
-      const glm::vec2 uv((static_cast<float>(x) + 0.5f) / static_cast<float>(map.width),
-                         (static_cast<float>(y) + 0.5f) / static_cast<float>(map.height));
-      const glm::vec3 direction =
-          glsl::environment_world_direction(glsl::equirectangular_direction(uv), map.rotation);
-      const size_t at = static_cast<size_t>(y) * static_cast<size_t>(map.width) + static_cast<size_t>(x);
-      sums[glsl::bin_of(space.direction(direction), n)] +=
-          solidAngle * glm::dvec4(map.scale * map.texels[at], 1);
+  const size_t bins = size_t{6} * n * n;
+  std::vector<glm::dvec4> sums(kBands * bins, glm::dvec4(0));  // w: solid angle
+  tbb::parallel_for(0, kBands, [&](int band) {
+    glm::dvec4* const own = &sums[static_cast<size_t>(band) * bins];
+    for (int y = map.height * band / kBands; y < map.height * (band + 1) / kBands; ++y) {
+      const double solidAngle = double(glsl::equirectangular_pixel_solid_angle(y, map.width, map.height));
+      for (int x = 0; x < map.width; ++x) {
+        const glm::vec2 uv((static_cast<float>(x) + 0.5f) / static_cast<float>(map.width),
+                           (static_cast<float>(y) + 0.5f) / static_cast<float>(map.height));
+        const glm::vec3 direction =
+            glsl::environment_world_direction(glsl::equirectangular_direction(uv), map.rotation);
+        const size_t at = static_cast<size_t>(y) * static_cast<size_t>(map.width) + static_cast<size_t>(x);
+        own[glsl::bin_of(space.direction(direction), n)] +=
+            solidAngle * glm::dvec4(map.scale * map.texels[at], 1);
+      }
     }
-  }
+  });
   std::vector<glm::vec4> means;
-  for (const glm::dvec4& sum : sums) means.emplace_back(glm::dvec3(sum) / sum.w, 0);
+  for (size_t bin = 0; bin < bins; ++bin) {
+    glm::dvec4 sum(0);
+    for (size_t band = 0; band < kBands; ++band) sum += sums[band * bins + bin];
+    means.emplace_back(glm::dvec3(sum) / sum.w, 0);
+  }
   return means;
 }
 

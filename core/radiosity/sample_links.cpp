@@ -117,6 +117,11 @@ class SampleSolver::Shooting {
     pairs_ += counts.pairs;
     rays_ += counts.rays;
     links_ += counts.links;
+    if (solver_.pairCount_ + pairs_ > solver_.settings_.pairs)
+      throw UsageError(
+          fmt::format("illumination samples: links look at more than the {:g} million pairs of elements "
+                      "allowed: a larger link_error or longest_edge makes fewer, a larger pairs allows more",
+                      double(solver_.settings_.pairs) * 1e-6));
     if ((solver_.sampleCount_ + links_) * sizeof(SampleAtElement) > solver_.settings_.memory)
       throw UsageError(
           fmt::format("illumination samples take more than the {} MiB allowed: a larger link_error or "
@@ -336,6 +341,7 @@ ShootCounts SampleSolver::shoot(const Occlusion& occlusion) {
   if (reference_ > 0) shooting.run();
   const ShootCounts counts = shooting.counts();
   sampleCount_ += counts.links;
+  pairCount_ += counts.pairs;
   tbb::parallel_for(0u, forest_.leafSlots(), [&](uint32_t leaf) { gather(leaf); });
   return counts;
 }

@@ -74,7 +74,8 @@ void SampleSolver::begin() {
   for (auto& tree : trees_) tree.clear();
   for (auto& tree : shown_) tree.clear();
   for (auto& samples : samples_) samples.clear();
-  sampleCount_ = evaluations_ = 0;
+  lightBytes_ = 0;
+  sampleCount_ = evaluations_ = pairCount_ = 0;
   reference_ = 0;
 }
 
@@ -182,6 +183,12 @@ void SampleSolver::light(uint32_t leaf, const glm::vec3& irradiance,
                          std::span<const glsl::IncidentLight> incident) {
   fresh_[leaf] = irradiance;
   if (!glossy(leaf)) return;
+  if ((lightBytes_ += incident.size_bytes()) > settings_.memory)
+    throw UsageError(
+        fmt::format("illumination samples: the light of lights at glossy elements takes more than the {} MiB "
+                    "allowed: fewer lights or a larger longest_edge make it less",
+                    settings_.memory >> 20));
+  lights_[leaf].reserve(lights_[leaf].size() + incident.size());
   for (const glsl::IncidentLight& light : incident)
     lights_[leaf].push_back({glsl::to_local(frames_[leaf], light.direction), light.spread, light.irradiance});
 }

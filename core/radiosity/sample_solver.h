@@ -25,6 +25,7 @@ namespace limn::radiosity {
 struct SampleSettings {
   /// Defaults as decimal numbers, which is how parameters show them.
   static constexpr double kLinkError = 0.003, kWiden = 0.22;
+  static constexpr int kMillionPairs = 1000;
 
   /// Links are refined while what they transport varies by more than this part of the mean irradiance of the
   /// lights; more than 0.
@@ -39,8 +40,11 @@ struct SampleSettings {
   /// Whether each sample is reflected by itself and pushed into the tree of every leaf below at once, as
   /// Sillion, Drettakis and Soler 1995 do, instead of all samples of a leaf together.
   bool immediate = false;
-  /// Bytes that samples may take, and trees; more throw UsageError.
+  /// Bytes that samples may take, and trees, and the light of lights by directions; more throw UsageError.
   uint64_t memory = uint64_t{1} << 30;
+  /// Pairs of elements that all rounds since begin() may look at, about a microsecond of one core each; more
+  /// throw UsageError.
+  uint64_t pairs = uint64_t{kMillionPairs} * 1'000'000;
 };
 
 /// Holds a sample that a link left at its receiver: the sender as a small area light.
@@ -77,13 +81,13 @@ class LIMN_API SampleSolver {
   void begin();
   /// Sets the light of lights at a leaf: its irradiance, W/m^2, and the same by directions, of which only
   /// leaves that are glossy() want any, in the space of the elements. Leaves may be lit by many threads at
-  /// once.
+  /// once. Throws UsageError beyond the memory allowed.
   void light(uint32_t leaf, const glm::vec3& irradiance, std::span<const glsl::IncidentLight> incident);
   /// Turns the light that arrived at leaves since the last call into light that has yet to be sent, and
   /// carries it up to the elements above.
   void reflect();
   /// Sends that light: links elements, each to the coarsest that the error allows, and leaves samples at
-  /// receivers and their light at leaves.
+  /// receivers and their light at leaves. Throws UsageError beyond the pairs or the memory allowed.
   ShootCounts shoot(const Occlusion& occlusion);
 
   /// Returns whether a leaf has a specular part.
@@ -174,8 +178,8 @@ class LIMN_API SampleSolver {
   std::vector<glm::vec3> irradiance_;
   std::vector<std::vector<SampleAtElement>> samples_;
   std::vector<uint32_t> firstFresh_;  ///< of samples_: where the last round's begin
-  std::atomic<uint64_t> treeBytes_{0};
-  uint64_t sampleCount_ = 0, evaluations_ = 0;
+  std::atomic<uint64_t> lightBytes_{0}, treeBytes_{0};
+  uint64_t sampleCount_ = 0, evaluations_ = 0, pairCount_ = 0;
   float reference_ = 0;  ///< mean irradiance of the lights, largest channel
 };
 

@@ -62,7 +62,8 @@ class Builder {
         mesh_(mesh),
         object_(object),
         side_(side),
-        first_(static_cast<uint32_t>(out.size())) {}
+        first_(static_cast<uint32_t>(out.size())),
+        countedAt_(mesh.positions.size(), kNowhere) {}
 
   void addTriangles(float longestEdge) {
     longest2_ = longestEdge * longestEdge;
@@ -214,6 +215,7 @@ class Builder {
     const auto added = static_cast<uint32_t>(out_.size());
     out_.objects.push_back(object_);
     origins_.push_back({{corners_, w, side_}});
+    if (const int k = wholeCorner(w); k >= 0) countedAt_[corners_[static_cast<size_t>(k)]] = added;
     out_.vertices.push_back(p);
     out_.normals.push_back(n);
     out_.areas.push_back(0);
@@ -235,19 +237,29 @@ class Builder {
     return at_[Place::of(p, glm::dvec3(0))];
   }
 
+  /// Returns the corner of the triangle that these weights are, or -1.
+  static int wholeCorner(const Weights& w) { return w.x == 1 ? 0 : w.y == 1 ? 1 : w.z == 1 ? 2 : -1; }
+
   /// Another vertex at a known place; the same one in another triangle counts once.
   void addOrigin(uint32_t known, const Weights& w, const glm::vec3& n) {
     const auto heaviest = [](const SurfelOrigin& o) {
-      const int k = o.weights.x == 1 ? 0 : o.weights.y == 1 ? 1 : o.weights.z == 1 ? 2 : -1;
+      const int k = wholeCorner(o.weights);
       return k < 0 ? -1 : static_cast<int64_t>(o.vertices[static_cast<size_t>(k)]);
     };
     const SurfelOrigin origin{corners_, w, side_};
+    const int64_t vertex = heaviest(origin);
+    // Of a mesh that is tiny beside the scene all vertices may lie at one place: most have been counted
+    // nowhere yet, and need not be looked for.
+    const bool isNew = vertex >= 0 && countedAt_[static_cast<size_t>(vertex)] == kNowhere;
+    if (vertex >= 0 && countedAt_[static_cast<size_t>(vertex)] == known) return;
     std::vector<SurfelOrigin>& list = origins_[known - first_];
-    for (const SurfelOrigin& o : list) {
-      const bool same = heaviest(o) >= 0 ? heaviest(o) == heaviest(origin)
-                                         : o.vertices == origin.vertices && o.weights == origin.weights;
-      if (same) return;
-    }
+    if (!isNew)
+      for (const SurfelOrigin& o : list) {
+        const bool same = heaviest(o) >= 0 ? heaviest(o) == vertex
+                                           : o.vertices == origin.vertices && o.weights == origin.weights;
+        if (same) return;
+      }
+    if (vertex >= 0) countedAt_[static_cast<size_t>(vertex)] = known;
     list.push_back(origin);
     sums_[known - first_] += n;
   }
@@ -287,6 +299,8 @@ class Builder {
   float longest2_ = 0;
   std::array<uint32_t, 3> corners_{};  ///< of the triangle in work
   uint32_t source_ = 0, places_ = 0;
+  static constexpr uint32_t kNowhere = ~0u;
+  std::vector<uint32_t> countedAt_;  ///< of each vertex: the surfel that it was counted at last
   std::unordered_map<Place, std::vector<uint32_t>, PlaceHash> at_;
   std::vector<std::vector<SurfelOrigin>> origins_;  ///< per surfel of this object
   std::vector<glm::vec3> sums_;                     ///< of normals, per surfel of this object

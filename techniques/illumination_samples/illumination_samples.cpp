@@ -53,7 +53,13 @@ constexpr Parameter kParameters[] = {
     real("longest_edge", 0.03, {0.005, 10}, "scene radii", "Longer edges of triangles are halved")
         .quality()
         .logScale(),
-    integer("memory", 1024, {1, 16384}, "MiB", "Scenes whose samples take more are refused"),
+    integer("memory", 1024, {1, 16384}, "MiB",
+            "Scenes whose samples, trees or light of lights take more are refused"),
+    integer(
+        "pairs", radiosity::SampleSettings::kMillionPairs, {1, 1000000}, "million",
+        "Scenes whose links look at more pairs of elements, over all bounces, are refused; a million takes "
+        "about a second of one core")
+        .logScale(),
 };
 constexpr StressCase kStress[] = {
     {.name = "coarse links", .scene = "cornell_box", .settings = "link_error=0.5", .factor = 8},
@@ -129,7 +135,8 @@ class IlluminationSamples : public Technique {
                                                 .receiver = p.choice("receiver") == 1,
                                                 .tree = tree,
                                                 .immediate = immediate,
-                                                .memory = uint64_t(p.integer("memory")) << 20},
+                                                .memory = uint64_t(p.integer("memory")) << 20,
+                                                .pairs = uint64_t(p.integer("pairs")) * 1'000'000},
                                     .shownTree = shownTree,
                                     .shown = shown,
                                     .drawTree = drawTree,

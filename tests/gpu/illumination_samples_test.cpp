@@ -312,5 +312,11 @@ TEST_F(IlluminationSamplesTest, ScenesThatTakeTooMuchMemoryAreRefused) {
   EXPECT_THROW(indirect(renderer, {{"memory", "1"}, {"link_error", "0.0001"}}), UsageError);
 }
 
+TEST_F(IlluminationSamplesTest, ScenesWhoseLinksLookAtTooManyPairsAreRefused) {
+  const scene::Scene scene = asset("glossy_room");
+  render::Renderer renderer(device(), scene);
+  EXPECT_THROW(indirect(renderer, {{"pairs", "1"}}), UsageError);
+}
+
 }  // namespace
 }  // namespace limn

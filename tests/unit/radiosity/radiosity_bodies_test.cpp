@@ -5,6 +5,7 @@
 #include <cmath>
 #include <cstddef>
 #include <cstdio>
+#include <vector>
 
 #include "core/radiosity/illumination.h"
 #include "tests/support/radiosity_meshes.h"
@@ -37,16 +38,20 @@ TEST(RadiosityBodiesTest, WhatLiesWithinAClosedBodyTakesTheLightAroundIt) {
   EXPECT_GT(within, 16u);
 }
 
+/// Adds a mesh to another.
+void append(TriangleMesh& to, const TriangleMesh& more) {
+  const auto first = static_cast<uint32_t>(to.positions.size());
+  to.positions.insert(to.positions.end(), more.positions.begin(), more.positions.end());
+  to.normals.insert(to.normals.end(), more.normals.begin(), more.normals.end());
+  for (const uint32_t i : more.indices) to.indices.push_back(first + i);
+}
+
 /// Two balls that are one object, as a limb that is sunk into a body: no element sees from within.
 TEST(RadiosityBodiesTest, WhatLiesWithinAPieceOfItsOwnObjectSeesFromOutside) {
   const glm::vec3 centres[2] = {{0, 0, 0}, {0.8f, 0.1f, 0.05f}};
   const float radii[2] = {1, 0.5f};
   TriangleMesh both = sphereMesh(centres[0], radii[0], 16);
-  const TriangleMesh limb = sphereMesh(centres[1], radii[1], 12);
-  const auto first = static_cast<uint32_t>(both.positions.size());
-  both.positions.insert(both.positions.end(), limb.positions.begin(), limb.positions.end());
-  both.normals.insert(both.normals.end(), limb.normals.begin(), limb.normals.end());
-  for (const uint32_t i : limb.indices) both.indices.push_back(first + i);
+  append(both, sphereMesh(centres[1], radii[1], 12));
   const Surfels surfels = surfelsOf({both});
   const ElementSpace space = spaceOf({both});
   EXPECT_EQ(surfels.pieceCount, 2u);
@@ -61,6 +66,34 @@ TEST(RadiosityBodiesTest, WhatLiesWithinAPieceOfItsOwnObjectSeesFromOutside) {
     if (within(surfels.vertices[i])) ++moved;
   }
   EXPECT_GT(moved, 20u);
+}
+
+/// Many such pairs: each limb is sunk into its own body and into no other.
+TEST(RadiosityBodiesTest, EachOfManyPiecesIsLookedForWhereItIs) {
+  constexpr size_t kPairs = 40;
+  const float radii[2] = {1, 0.5f};
+  std::vector<glm::vec3> centres;
+  TriangleMesh all;
+  for (size_t pair = 0; pair < kPairs; ++pair) {
+    const glm::vec3 place(4 * float(pair % 8), 4 * float(pair / 8), 0);
+    for (const glm::vec3& offset : {glm::vec3(0), glm::vec3(0.8f, 0.1f, 0.05f)}) {
+      centres.push_back(place + offset);
+      append(all, sphereMesh(centres.back(), radii[(centres.size() - 1) % 2], 16));
+    }
+  }
+  const Surfels surfels = surfelsOf({all});
+  const ElementSpace space = spaceOf({all});
+  ASSERT_EQ(surfels.pieceCount, 2 * kPairs);
+  std::vector<size_t> moved(2 * kPairs, 0);
+  for (size_t i = 0; i < surfels.size(); ++i) {
+    const size_t other = surfels.pieces[i] ^ 1;
+    const auto within = [&](const glm::vec3& p) {
+      return glm::length(space.worldPoint(p) - centres[other]) < 0.97f * radii[other % 2];
+    };
+    EXPECT_FALSE(within(surfels.positions[i]));
+    if (within(surfels.vertices[i])) ++moved[surfels.pieces[i]];
+  }
+  for (const size_t count : moved) EXPECT_GT(count, 10u);
 }
 
 /// What lies within an open piece of another object sees its back, which is black; a floor is no body.

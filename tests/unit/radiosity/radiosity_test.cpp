@@ -6,6 +6,8 @@
 #include <algorithm>
 #include <cstdio>
 #include <numeric>
+#include <set>
+#include <vector>
 
 #include "core/base/error.h"
 #include "core/radiosity/illumination.h"
@@ -146,6 +148,25 @@ TEST(RadiosityTest, DuplicateVerticesAreOneSurfel) {
   EXPECT_EQ(whole.size(), split.size());
   EXPECT_EQ(whole.size(), 24u * 11 + 2);
   EXPECT_EQ(split.backless[0], 1);
+}
+
+/// A sphere that is tiny beside the scene: all of its vertices lie at one place, and elements differ by their
+/// normals alone, which are means over each vertex once.
+TEST(RadiosityTest, VerticesOfATinyMeshCountOnceEach) {
+  const std::vector<TriangleMesh> meshes{sphereMesh({0, 0, 0}, 1e-7f, 16)};
+  const Surfels surfels = createSurfels(meshes, 1);
+  EXPECT_LT(surfels.size(), 64u);
+  std::set<uint32_t> all;
+  for (size_t i = 0; i < surfels.size(); ++i) {
+    std::set<uint32_t> own;
+    for (uint32_t k = surfels.firstOrigin[i]; k < surfels.firstOrigin[i + 1]; ++k) {
+      const SurfelOrigin& o = surfels.origins[k];
+      const uint32_t vertex = o.vertices[o.weights.x == 1 ? 0 : o.weights.y == 1 ? 1 : 2];
+      EXPECT_TRUE(own.insert(vertex).second) << vertex;
+      all.insert(vertex);
+    }
+  }
+  EXPECT_GE(all.size() + 4, meshes[0].positions.size());
 }
 
 TEST(RadiosityTest, TrianglesWithoutAreaAndSingleTrianglesAreHarmless) {

@@ -3,7 +3,9 @@
 
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <cstdio>
+#include <vector>
 
 #include "core/base/error.h"
 #include "tests/unit/radiosity/sample_world.h"
@@ -294,6 +296,45 @@ TEST(SampleSolverTest, ScenesThatTakeTooMuchMemoryAreRefused) {
   world.light({1, 1});
   world.solver->reflect();
   EXPECT_THROW(world.solver->shoot(FreeSight()), UsageError);
+}
+
+/// Wide lights are up to 64 pieces for a narrow lobe: hundreds of them would take more than all samples.
+TEST(SampleSolverTest, LightOfManyLightsThatTakesTooMuchMemoryIsRefused) {
+  SampleWorld world(facingPlates(4), {diffuseLeaf(0.8f), metalLeaf(0.2f)}, {.memory = 4000});
+  const std::vector<glsl::IncidentLight> lights(100, {glm::vec3(0, 1, 0), 0.1f, glm::vec3(1)});
+  const auto leafOf = [&](uint32_t object) {
+    const auto found = std::ranges::find(world.surfels.objects, object);
+    return world.forest.leafOf()[static_cast<size_t>(found - world.surfels.objects.begin())];
+  };
+  for (int time = 0; time < 2; ++time) EXPECT_NO_THROW(world.solver->light(leafOf(0), glm::vec3(1), lights));
+  for (int solution = 0; solution < 2; ++solution) {
+    world.solver->begin();
+    EXPECT_NO_THROW(world.solver->light(leafOf(1), glm::vec3(1), lights));
+    EXPECT_THROW(world.solver->light(leafOf(1), glm::vec3(1), lights), UsageError);
+  }
+}
+
+/// Over all bounces; each solution counts for itself.
+TEST(SampleSolverTest, ScenesWhoseLinksLookAtTooManyPairsAreRefused) {
+  const auto twoRounds = [](SampleWorld& world) {
+    world.solver->begin();
+    world.light({1, 1});
+    uint64_t pairs = 0;
+    for (int round = 0; round < 2; ++round) {
+      world.solver->reflect();
+      pairs += world.solver->shoot(FreeSight()).pairs;
+    }
+    return pairs;
+  };
+  const auto plates = [](const SampleSettings& settings) {
+    return SampleWorld(facingPlates(8), {diffuseLeaf(0.8f), diffuseLeaf(0.5f)}, settings);
+  };
+  SampleWorld free = plates({});
+  const uint64_t pairs = twoRounds(free);
+  SampleWorld enough = plates({.pairs = pairs});
+  for (int solution = 0; solution < 2; ++solution) EXPECT_EQ(twoRounds(enough), pairs);
+  SampleWorld tooFew = plates({.pairs = pairs - 1});
+  EXPECT_THROW(twoRounds(tooFew), UsageError);
 }
 
 }  // namespace
