@@ -54,14 +54,16 @@ FilteredMap makeMap(int width, Rows rows, const Function& function) {
 
 /// Mean radiance over each texel, weighted by solid angle.
 FilteredMap resampled(const FilteredMap& source, int width, Rows rows) {
-  const int n = std::max(1, (source.width + width - 1) / width);
+  const int height = std::max(width / 2, 1);
+  const int across = std::max(1, (source.width + width - 1) / width);
+  const int down = std::max(1, (source.height + height - 1) / height);
   const float cell = 1.0f / static_cast<float>(width);
   return makeMap(width, rows, [&](vec2 centre) {
     dvec3 sum(0);
     double weights = 0;
-    for (int j = 0; j < n; ++j) {
-      for (int i = 0; i < n; ++i) {
-        const vec2 offset = texelCentre(i, j, n, n) - vec2(0.5f);
+    for (int j = 0; j < down; ++j) {
+      for (int i = 0; i < across; ++i) {
+        const vec2 offset = texelCentre(i, j, across, down) - vec2(0.5f);
         const vec2 uv = centre + offset * vec2(cell, 2 * cell);
         const double weight =
             std::abs(std::sin(std::numbers::pi * static_cast<double>(uv.y))) + 1e-6;  // on the poles

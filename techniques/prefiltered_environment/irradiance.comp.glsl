@@ -7,13 +7,16 @@ layout(local_size_x = 8, local_size_y = 8) in;
 layout(rgba32f) writeonly uniform image2DArray irradiance;
 uniform sampler2D environment_levels_map;  // equirectangular
 uniform int source_level;
-uniform int parts;  // along each side of a texel, where the picture has too few for the sum
+// Into which a texel is cut, where the picture has too few for the sum.
+uniform int columns_of_texel;
+uniform int rows_of_texel;
 
 void main() {
   ivec3 at = ivec3(gl_GlobalInvocationID);
   ivec3 extent = imageSize(irradiance);
   if (any(greaterThanEqual(at, extent))) return;
   vec3 normal = prefiltered_texel_direction(vec2(at.xy) + 0.5, at.z, extent.y);
+  ivec2 parts = ivec2(columns_of_texel, rows_of_texel);
   ivec2 points = parts * textureSize(environment_levels_map, source_level);
   vec3 sum = vec3(0.0);
   for (int y = 0; y < points.y; ++y) {

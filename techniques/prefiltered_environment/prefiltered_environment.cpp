@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <bit>
 #include <cmath>
+#include <glm/glm.hpp>
 #include <map>
 #include <numbers>
 #include <string>
@@ -66,6 +67,8 @@ constexpr int kGroupSize = 8;
 constexpr int kFilteredLevels = glsl::environment_levels - 1;  ///< level 0 is the radiance itself
 /// Of maps of irradiance; and the rows of the picture that it is summed over, at least.
 constexpr int kIrradianceSize = 32;
+/// Of that picture, at most: software renderers leave the loops of a thread after 65,535 steps.
+constexpr int kMostIrradianceColumns = 1024;
 constexpr int kCoarsestSize = 8;  ///< of the chain, at least
 static_assert(kFilteredLevels == glsl::power_levels);
 
@@ -128,14 +131,15 @@ class PrefilteredEnvironment : public Technique {
     const auto make = [](bool needed, TextureHandle& map, const auto& add) {
       if (needed && !map) map = add();
     };
-    make(needs.sharp, maps_.sharp, [&] { return filtering.addChain(environment, picture.width); });
+    const glm::ivec2 size(picture.width, picture.height);
+    make(needs.sharp, maps_.sharp, [&] { return filtering.addChain(environment, size); });
     make(true, maps_.irradiance,
-         [&] { return filtering.addIrradiance(environment, picture.height, Irradiance::whole); });
+         [&] { return filtering.addIrradiance(environment, size, Irradiance::whole); });
     make(needs.ggx, maps_.filtered, [&] { return filtering.addLobes(maps_.sharp, Lobes::ggx); });
     make(needs.power, maps_.power, [&] { return filtering.addLobes(maps_.sharp, Lobes::power); });
     make(needs.microfacets, maps_.microfacetLobes, [&] { return filtering.addMicrofacetLobes(); });
     make(needs.grazing, maps_.grazing,
-         [&] { return filtering.addIrradiance(environment, picture.height, Irradiance::grazing); });
+         [&] { return filtering.addIrradiance(environment, size, Irradiance::grazing); });
   }
 
   /// Declares the passes that filter the environment; they run again when it changes.
@@ -149,7 +153,7 @@ class PrefilteredEnvironment : public Technique {
           samples_(parameters.integer("samples")) {}
 
     /// Returns the radiance in the technique's map, each level half as large as the one before.
-    TextureHandle addChain(TextureHandle environment, int sourceWidth) const {
+    TextureHandle addChain(TextureHandle environment, const glm::ivec2& source) const {
       const int levels = levelOf(size_, kCoarsestSize) + 1;
       TextureHandle chain =
           graph_.createTexture("radiance of the environment", desc(GL_RGBA32F, size_, levels));
@@ -162,7 +166,7 @@ class PrefilteredEnvironment : public Technique {
         if (!base) pass.also(ShaderName("finer").level(level - 1));
         const auto program = pass.program(shader("resample", {{"BASE", base ? "1" : "0"}}));
         pass.execute(
-            [=, across = base ? samplesAcross(sourceWidth) : kSamplesAcrossLevel,
+            [=, across = base ? samplesAcross(source) : kSamplesAcrossLevel,
              extent = desc(GL_RGBA32F, std::max(size_ >> level, 1), 1)](frame::PassContext& context) {
               context.use(program).set("samples_across", across);
               dispatch(context, extent);
@@ -173,7 +177,7 @@ class PrefilteredEnvironment : public Technique {
 
     /// Returns the irradiance of surfaces that face each direction, W/m^2, from a picture with coarser
     /// levels.
-    TextureHandle addIrradiance(TextureHandle environment, int sourceRows, Irradiance kind) const {
+    TextureHandle addIrradiance(TextureHandle environment, const glm::ivec2& source, Irradiance kind) const {
       const bool grazing = kind == Irradiance::grazing;
       const std::string name =
           grazing ? "grazing irradiance of the environment" : "irradiance of the environment";
@@ -184,12 +188,15 @@ class PrefilteredEnvironment : public Technique {
           pass.write(graph_.createTexture(name, extent), Access::imageStore, "irradiance",
                      grazing ? "for what lies under a coat" : "for diffuse surfaces");
       const auto program = pass.program(shader("irradiance", {{"GRAZING", grazing ? "1" : "0"}}));
-      const int level = std::max(levelOf(sourceRows, kIrradianceSize), 0);
-      const int parts = std::max((kIrradianceSize + sourceRows - 1) / sourceRows, 1);
+      int level = std::max(levelOf(source.y, kIrradianceSize), 0);
+      while (source.x >> level > kMostIrradianceColumns) ++level;
+      const glm::ivec2 summed = glm::max(source >> level, 1), least(2 * kIrradianceSize, kIrradianceSize);
+      const glm::ivec2 parts = (least + summed - 1) / summed;
       pass.execute([=](frame::PassContext& context) {
         gpu::Program& sum = context.use(program);
         sum.set("source_level", level);
-        sum.set("parts", parts);
+        sum.set("columns_of_texel", parts.x);
+        sum.set("rows_of_texel", parts.y);
         dispatch(context, extent);
       });
       return irradiance;
@@ -268,10 +275,10 @@ class PrefilteredEnvironment : public Technique {
     }
 
     /// Returns how many samples lie along a texel of level 0, two in each pixel of the picture where the
-    /// texel is widest.
-    int samplesAcross(int sourceWidth) const {
+    /// texel is widest, along the side on which pixels are narrower.
+    int samplesAcross(const glm::ivec2& source) const {
       const double radians = paraboloid_ ? 4.0 / (size_ - 2) : std::numbers::pi / (size_ - 1);
-      const double pixels = radians * sourceWidth / (2 * std::numbers::pi);
+      const double pixels = radians * std::max(source.x, 2 * source.y) / (2 * std::numbers::pi);
       return std::clamp(static_cast<int>(std::ceil(2 * pixels)), 2, kMostSamplesAcross);
     }
 

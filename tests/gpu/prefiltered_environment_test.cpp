@@ -262,6 +262,32 @@ TEST_F(PrefilteredEnvironmentTest, BodiesHaveTheirMapsFilteredOnce) {
   }
 }
 
+/// Under a sky of the radiance 1 + 0.8 d.y a white ball has 1 + 0.8 (2/3) n.y, from whichever side it is
+/// seen: also where the picture is a single column, whose texels reach all around, and where it is so wide
+/// that a thread of a software renderer does not come to the end of its pixels. Of that one 8 rows are summed
+/// over, which takes 0.006 of the light at n.y = 0.5; the rest of the bound is that of the other tests' maps.
+TEST_F(PrefilteredEnvironmentTest, PicturesOfAnyShapeHaveTheirIrradiance) {
+  for (const glm::ivec2& size : {glm::ivec2(1, 512), glm::ivec2(3, 64), glm::ivec2(4096, 32)}) {
+    scene::Environment sky;
+    sky.width = size.x;
+    sky.height = size.y;
+    for (int y = 0; y < size.y; ++y) {
+      const vec2 middle(0.5f, (static_cast<float>(y) + 0.5f) / static_cast<float>(size.y));
+      sky.texels.insert(sky.texels.end(), static_cast<size_t>(size.x),
+                        vec3(1 + 0.8f * glsl::equirectangular_direction(middle).y));
+    }
+    const scene::Scene scene = row({lambert()}, sky);
+    for (const char* map : {"paraboloid", "equirectangular"})
+      for (const vec3& side : {vec3(0, 0, 1), vec3(1, 0, 0), vec3(0, 0, -1)}) {
+        SCOPED_TRACE(std::to_string(size.x) + " x " + std::to_string(size.y) + ' ' + map);
+        const Image image = drawn(scene, {{"map", map}}, camera(side));
+        // Where n.y is 0.5 and -0.5: half of the ball's radius, 0.95 of half the picture.
+        EXPECT_NEAR(image.at(kBallSide / 2, 10, 0), 1 + 0.8f / 3, 0.02f);
+        EXPECT_NEAR(image.at(kBallSide / 2, kBallSide - 11, 0), 1 - 0.8f / 3, 0.02f);
+      }
+  }
+}
+
 /// A small sun on the side of the camera: what faces it has its irradiance, and nothing is brighter than it.
 TEST_F(PrefilteredEnvironmentTest, ABrightSunKeepsItsIrradiance) {
   constexpr float kSun = 1e5f;

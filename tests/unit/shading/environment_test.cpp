@@ -3,6 +3,7 @@
 
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <cmath>
 #include <cstdlib>
 #include <filesystem>
@@ -78,6 +79,24 @@ TEST(RadianceLevels, EveryLevelHoldsTheLightOfTheMap) {
 TEST(RadianceLevels, NeedAMap) {
   EXPECT_THROW(radianceLevels({}), Error);
   EXPECT_TRUE(radianceLevels(noise(1, 1)).empty());
+}
+
+/// A single bright row among 512, whichever it is: none is skipped where a picture is narrow.
+TEST(Environment, NarrowPicturesGiveTheLightOfWideOnes) {
+  const auto irradianceOf = [](int width, int bright) {
+    scene::Environment e;
+    e.width = width;
+    e.height = 512;
+    e.texels.assign(static_cast<size_t>(width) * 512, vec3(0));
+    const auto first = e.texels.begin() + ptrdiff_t{bright} * width;
+    std::fill(first, first + width, vec3(100));
+    return filterEnvironment(e).irradiance.texels;
+  };
+  for (const int bright : {199, 200, 202}) {
+    const std::vector<vec3> narrow = irradianceOf(1, bright), wide = irradianceOf(1024, bright);
+    for (size_t i = 0; i < wide.size(); ++i)
+      ASSERT_NEAR(narrow[i].x, wide[i].x, 0.01f * wide[i].x + 1e-3f) << bright << ", " << i;
+  }
 }
 
 // L = 1 + d.a: the cosine convolution keeps the linear part by 2/3.
