@@ -117,7 +117,7 @@ class Tuning {
   }
 
   void measureCases(const std::vector<bench::Case>& cases, const std::string& progressName) {
-    folder_->measure(cases, progressName);
+    folder_->measure(cases, progressName, Measured::here);
     for (bench::Row& row : folder_->rows()) rows_[row.key] = std::move(row);
   }
 

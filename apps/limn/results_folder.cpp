@@ -24,13 +24,14 @@ namespace {
 class CaseWork {
  public:
   CaseWork(const std::vector<bench::Case>& cases, const fs::path& out, const BackendOptions& backend,
-           double stallTimeout, const std::string& progressName = {})
+           double stallTimeout, const std::string& progressName = {}, Measured counts = Measured::anywhere)
       : cases_(cases),
         out_(out),
         file_(out / "results.jsonl"),
         backend_(backend),
         stallTimeout_(stallTimeout),
         progressName_(progressName),
+        counts_(counts),
         report_(cases.size()) {
     for (std::size_t i = 0; i < cases.size(); ++i) left_.push_back(i);
   }
@@ -89,6 +90,7 @@ class CaseWork {
     callbacks.provenance = provenance;
     callbacks.machine = bench::machineName();
     callbacks.driver = benchSession.driverName();
+    callbacks.hereAlone = counts_ == Measured::here;
     callbacks.reference = [&](const bench::Case& c) { return benchSession.reference(c); };
     callbacks.measure = [&](const bench::Case& c) { return benchSession.measure(c); };
     callbacks.time = [&](const bench::Case& c) { return benchSession.time(c); };
@@ -160,6 +162,7 @@ class CaseWork {
   const BackendOptions& backend_;
   const double stallTimeout_;
   const std::string progressName_;
+  const Measured counts_;
   WorkerReport report_;
   std::vector<std::size_t> left_;  ///< indices of the cases that are still to be looked at
 };
@@ -185,9 +188,9 @@ void ResultsFolder::check(const std::vector<bench::Case>& cases) {
   CaseWork(cases, folder_, backend_, stallTimeout_).check();
 }
 
-bench::Summary ResultsFolder::measure(const std::vector<bench::Case>& cases,
-                                      const std::string& progressName) {
-  CaseWork work(cases, folder_, backend_, stallTimeout_, progressName);
+bench::Summary ResultsFolder::measure(const std::vector<bench::Case>& cases, const std::string& progressName,
+                                      Measured counts) {
+  CaseWork work(cases, folder_, backend_, stallTimeout_, progressName, counts);
   const bench::Summary summary = work.run();
   renderer_ = work.renderer();
   return summary;

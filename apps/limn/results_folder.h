@@ -11,6 +11,12 @@
 
 namespace limn::app {
 
+/// Says which rows of a folder count.
+enum class Measured {
+  anywhere,  ///< tables keep machines apart
+  here       ///< those of this machine and driver alone
+};
+
 /// Holds a folder with results.jsonl, references, pictures, tables and report while cases are measured into
 /// it.
 class ResultsFolder {
@@ -24,9 +30,11 @@ class ResultsFolder {
   void check(const std::vector<bench::Case>& cases);
   /// Measures the cases for which there is no row yet, or whose row was measured with something that has
   /// changed since, with a progress bar of that name. Measures in a separate process: a case that crashes, or
-  /// that stalls, loses only its own row. No thread and no OpenGL context may exist. Returns how many rows
-  /// were measured, found and failed.
-  bench::Summary measure(const std::vector<bench::Case>& cases, const std::string& progressName);
+  /// that stalls, loses only its own row. No thread and no OpenGL context may exist. With Measured::here rows
+  /// of another machine or driver are measured again as well. Returns how many rows were measured, found and
+  /// failed.
+  bench::Summary measure(const std::vector<bench::Case>& cases, const std::string& progressName,
+                         Measured counts = Measured::anywhere);
   /// Returns the renderer of the last rows that were measured or found; "" before.
   const std::string& renderer() const { return renderer_; }
   /// Returns all rows of the folder.

@@ -56,7 +56,8 @@ export function stability(found) {
   return [el("section", {id: "stability", "aria-labelledby": "stability-name"},
     el("h2", {id: "stability-name"}, "Stability"),
     el("p", {class: "note"}, `Extreme cases by limn stress on ${found.renderer}. Factor: the error over that of the unchanged scene.`,
-      results.some((result) => result.outdated) ? " † measured with another version of the program than the newest case." : null),
+      results.some((result) => result.outdated)
+        ? " † measured with another version of the program, of a technique or of the scene than the newest case." : null),
     tableElement("Extreme cases by verdict", [{label: "technique", text: true},
       ...VERDICTS.map(([name, sign]) => ({label: `${sign} ${name}`}))], counts),
     troubled.length ? caseTable("Cases that do not pass", troubled) : null,

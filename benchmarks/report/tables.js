@@ -53,7 +53,8 @@ export function errorTable(table, metric, time, onCurrent) {
       traced ? cell(referenceText(row.reference_ms)) : null, cell(isNumber(row.memory_bytes) ? number(row.memory_bytes / 2 ** 20) : "–"), cell(front.includes(row) ? "*" : ""));
   });
   const compared = table.baseline ? `Times as fast: against ${table.baseline}, with the interval of 95 % (n = 1: one turn, no interval). ` : "";
-  const outdated = table.rows.some((row) => row.outdated) ? "† measured with another version of the program than the newest row. " : "";
+  const outdated = table.rows.some((row) => row.outdated)
+    ? "† measured with another version of the program, of a technique or of the scene than the newest row. " : "";
   return tableElement(`Errors and times. ${compared}${outdated}* on the Pareto front of ${metric.label} and time (${time.label}); < below three ` +
     "times the reference's noise", head, rows);
 }

@@ -243,7 +243,8 @@ Columns costColumns() {
        true},
       {"outdated",
        "",
-       "whether another version of the program measured the row than the table's newest; `true` or `false`",
+       "whether the row was measured with another version of the program, of a technique or of the scene "
+       "than the table's newest; `true` or `false`",
        [](const Row& row, const Table& table) { return fmt::format("{}", isOutdated(row, table)); },
        {},
        Align::left,

@@ -7,6 +7,7 @@
 #include <filesystem>
 #include <map>
 #include <nlohmann/json.hpp>
+#include <tuple>
 #include <vector>
 
 #include "core/question/question_fields.h"
@@ -86,11 +87,22 @@ void addQuestion(Differences& differences, const Case& first, const Case& second
   differences.add("interfaces", fmt::format("{}", ours.interfaces), fmt::format("{}", theirs.interfaces));
 }
 
+/// The files of one scene, and the modules of techniques that both sides have: other scenes have other files.
+void addVersions(Differences& differences, const Row& first, const Row& second) {
+  const Provenance &ours = first.provenance, &theirs = second.provenance;
+  differences.add("program", ours.program, theirs.program);
+  const auto files = [](const Case& c) { return std::tie(c.scene, c.environment, c.grid, c.defaultLights); };
+  if (files(first.what) == files(second.what)) differences.add("scene files", ours.scene, theirs.scene);
+  for (const Provenance::Module& own : ours.modules) {
+    const auto other = std::ranges::find(theirs.modules, own.technique, &Provenance::Module::technique);
+    if (other != theirs.modules.end()) differences.add("module " + own.technique, own.hash, other->hash);
+  }
+}
+
 void addPlace(Differences& differences, const Row& first, const Row& second) {
   differences.add("renderer", first.cost.renderer, second.cost.renderer);
   differences.add("driver", first.cost.driver, second.cost.driver);
   differences.add("machine", first.cost.machine, second.cost.machine);
-  differences.add("program", first.provenance.program, second.provenance.program);
 }
 
 void addParameters(Differences& differences, const Row& first, const Row& second) {
@@ -117,6 +129,7 @@ std::string differingSettings(const Row& first, const Row& second) {
   Differences differences;
   addQuestion(differences, first.what, second.what);
   addPlace(differences, first, second);
+  addVersions(differences, first, second);
   addParameters(differences, first, second);
   return differences.text();
 }

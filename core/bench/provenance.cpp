@@ -4,6 +4,7 @@
 #include <fmt/format.h>
 #include <xxhash.h>
 
+#include <algorithm>
 #include <memory>
 
 #include "core/base/error.h"
@@ -21,6 +22,25 @@ std::string staleness(const Provenance& then, const Provenance& now) {
     if (then.modules[i].hash != now.modules[i].hash)
       return fmt::format("technique {} has changed", now.modules[i].technique);
   return {};
+}
+
+void NewestProvenance::add(const std::string& scene, const Provenance& provenance) {
+  if (provenance.program.empty()) return;
+  program_ = provenance.program;
+  scenes_[scene] = provenance.scene;
+  for (const Provenance::Module& m : provenance.modules) modules_[m.technique] = m.hash;
+}
+
+bool NewestProvenance::differs(const std::string& scene, const Provenance& provenance) const {
+  if (program_.empty()) return false;
+  const auto isAnother = [](const auto& newest, const std::string& key, const std::string& hash) {
+    const auto found = newest.find(key);
+    return found != newest.end() && found->second != hash;
+  };
+  return provenance.program != program_ || isAnother(scenes_, scene, provenance.scene) ||
+         std::ranges::any_of(provenance.modules, [&](const Provenance::Module& m) {
+           return isAnother(modules_, m.technique, m.hash);
+         });
 }
 
 nlohmann::ordered_json provenanceToJson(const Provenance& provenance) {

@@ -25,6 +25,8 @@ Change compareRows(const Row& before, const Row& now, const RegressionOptions& o
   Change change;
   change.label = label(now.what);
   change.failure = now.failure;
+  const std::string &then = before.provenance.scene, &files = now.provenance.scene;
+  change.otherFiles = !mayBeEqual(then, files);
   if (!now.failure.empty()) return change;
   const Metrics &a = errorOf(before), &b = errorOf(now);
   change.errorBefore = a.rmse;
@@ -53,6 +55,7 @@ std::string verdict(const Change& change) {
   add(change.worse, "worse");
   add(change.faster, "faster");
   add(change.better, "better");
+  add(change.otherFiles && !text.empty(), "the scene has changed");
   return text;
 }
 
@@ -104,6 +107,8 @@ std::string toMarkdown(const Regression& regression) {
       count(&Change::faster), count(&Change::better), regression.onlyBefore, regression.onlyNow);
   if (const auto elsewhere = count(&Change::elsewhere); elsewhere > 0)
     text += fmt::format("; times of {} not compared, which two machines measured", elsewhere);
+  if (const auto others = count(&Change::otherFiles); others > 0)
+    text += fmt::format("; the scenes of {} have changed in between", others);
   text += "\n";
   std::vector<Change> shown;
   std::ranges::copy_if(regression.changes, std::back_inserter(shown),

@@ -22,6 +22,7 @@ struct Change {
   std::string label;
   Ratio time;                         ///< later / earlier, frame; value 0: not timed in both, or elsewhere
   bool elsewhere = false;             ///< on another machine: the times are not compared
+  bool otherFiles = false;            ///< the scene's files have changed in between
   double errorBefore = 0, error = 0;  ///< RMSE, in the penumbra where that is known
   bool slower = false, faster = false;
   bool worse = false, better = false;

@@ -244,6 +244,22 @@ void keepObjects(Json& list) {
     std::erase_if(list.get_ref<Json::array_t&>(), [](const Json& element) { return !element.is_object(); });
 }
 
+/// A text of an object; "" where it has none of that key.
+std::string textOf(const Json& json, const char* key) {
+  const bool has = json.is_object() && json.contains(key) && json[key].is_string();
+  return has ? json[key].get<std::string>() : std::string();
+}
+
+/// What a result of `limn stress` records of where it comes from, as far as it does.
+Provenance recordedIn(const Json& result) {
+  const Json json = known(result, "provenance");
+  Provenance provenance{textOf(json, "program"), textOf(json, "scene"), {}};
+  if (json.is_object())
+    for (const Json& m : known(json, "techniques"))
+      provenance.modules.push_back({textOf(m, "technique"), textOf(m, "file"), textOf(m, "hash")});
+  return provenance;
+}
+
 /// What `limn stress` left in the folder, less where it comes from; null if it was not run there.
 Json stability(const std::filesystem::path& folder) {
   const std::filesystem::path file = folder / "stress.json";
@@ -253,15 +269,10 @@ Json stability(const std::filesystem::path& folder) {
   if (json.is_discarded()) throw Error(fmt::format("{}: not what limn stress writes", file.string()));
   if (!json.contains("results") || !json["results"].is_array()) return json;
   keepObjects(json["results"]);
-  const auto programOf = [](const Json& result) {
-    const Json provenance = known(result, "provenance");
-    return provenance.is_object() ? known(provenance, "program") : Json();
-  };
-  Json program;  // of the last result that records it
-  for (const Json& result : json["results"])
-    if (const Json own = programOf(result); !own.is_null()) program = own;
+  NewestProvenance newest;  // results stand in the order in which they were measured
+  for (const Json& result : json["results"]) newest.add(textOf(result, "scene"), recordedIn(result));
   for (Json& result : json["results"]) {
-    if (programOf(result) != program) result["outdated"] = true;
+    if (newest.differs(textOf(result, "scene"), recordedIn(result))) result["outdated"] = true;
     result.erase("provenance");
     if (result.contains("answers")) keepObjects(result["answers"]);
   }

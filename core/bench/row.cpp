@@ -85,10 +85,13 @@ Cost costFromJson(const Json& json) {
   const Json& split = json.at("split_ms");
   cost.split = {split.at("maps").get<double>(), split.at("filters").get<double>(),
                 split.at("technique").get<double>(), split.at("rest").get<double>()};
-  if (json.contains("x_bound"))
+  if (json.contains("x_bound")) {
     cost.bound = {json["x_bound"].at("own_ms").get<std::vector<double>>(),
                   json["x_bound"].at("bound_ms").get<std::vector<double>>(),
                   json["x_bound"].at("turns").get<int>()};
+    if (cost.bound->own.empty() || cost.bound->bound.empty())
+      throw Error("not a row of results: x_bound has no times");
+  }
   cost.memoryBytes = json.at("memory_bytes").get<std::int64_t>();
   cost.driver = json.value("driver", "");
   cost.machine = json.value("machine", "");

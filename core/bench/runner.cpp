@@ -188,8 +188,8 @@ class Run {
   /// The row that holds for the case as it is now, null if there is none.
   const Row* finished(const Case& c, const std::string& key) const {
     const Row* row = results_.find(key);
-    const bool holds =
-        row && isValid(*row, c, callbacks_.provenance) && (hasAllTurns(*row, c) || isOfThisMachine(*row));
+    const bool holds = row && isValid(*row, c, callbacks_.provenance) &&
+                       (isOfThisMachine(*row) || (!callbacks_.hereAlone && hasAllTurns(*row, c)));
     return holds ? row : nullptr;
   }
 

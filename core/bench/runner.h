@@ -57,6 +57,9 @@ struct Callbacks {
   /// Where it is measured now, as in Cost: a row of elsewhere that lacks turns is measured again, since times
   /// of two machines are no sample of either. Empty: not compared.
   std::string machine, driver;
+  /// Whether rows of elsewhere are measured again even if they lack no turn: for those who compare rows
+  /// without the tables, which keep machines apart.
+  bool hereAlone = false;
 };
 
 struct Summary {

@@ -102,7 +102,8 @@ class LIMN_API StressRun {
 };
 
 /// Returns a table with a line for each result, in the order in which they were measured; those that did not
-/// pass are explained. Results of another program than the last have a mark that a line below explains.
+/// pass are explained. Results of another version of the program, of a technique or of a scene than the last
+/// ones have a mark that a line below explains.
 LIMN_API std::string toMarkdown(std::span<const StressResult> results);
 /// Returns {"renderer": ..., "results": [{"technique", "case", "scene", "settings", "beside", "own",
 /// "allowed", "answers": [{"term", "verdict", "error", "benign", "factor", "message"}], "provenance":

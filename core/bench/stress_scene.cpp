@@ -74,8 +74,11 @@ void scale(scene::Scene& scene, float factor) {
     light.range *= factor;
   }
   for (scene::CameraLens& camera : scene.cameras) camera.near *= factor;
-  for (scene::Material& material : scene.materials)
+  for (scene::Material& material : scene.materials) {
+    material.thickness *= factor;
+    material.attenuationDistance *= factor;
     if (material.subsurface) material.subsurface->extinction /= factor;
+  }
   scene.medium.sigmaA /= factor;
   scene.medium.sigmaS /= factor;
   if (scene.medium.grid) {

@@ -2,7 +2,6 @@
 #include <fmt/format.h>
 
 #include <nlohmann/json.hpp>
-#include <ranges>
 #include <utility>
 
 #include "core/base/error.h"
@@ -52,10 +51,10 @@ std::string caseText(const StressResult& result) {
 }
 
 /// Results stand in the order in which they were measured.
-std::string lastProgram(std::span<const StressResult> results) {
-  for (const StressResult& result : results | std::views::reverse)
-    if (!result.provenance.program.empty()) return result.provenance.program;
-  return {};
+NewestProvenance newestOfResults(std::span<const StressResult> results) {
+  NewestProvenance newest;
+  for (const StressResult& result : results) newest.add(result.scene, result.provenance);
+  return newest;
 }
 
 std::vector<MarkdownColumn<StressResult>> stressColumns() {
@@ -117,16 +116,18 @@ const StressAnswer& StressResult::worst() const {
 }
 
 std::string toMarkdown(std::span<const StressResult> results) {
-  const std::string program = lastProgram(results);
+  const NewestProvenance newest = newestOfResults(results);
   bool mixed = false;
   std::vector<MarkdownColumn<StressResult>> columns = stressColumns();
   columns.front().cell = [&](const StressResult& r) {
-    const bool outdated = r.provenance.program != program;
+    const bool outdated = newest.differs(r.scene, r.provenance);
     mixed |= outdated;
     return outdated ? r.technique + " \u2020" : r.technique;
   };
   const std::string table = markdownTable(columns, results);
-  return mixed ? table + "\n\u2020 measured with another version of the program than the newest case\n"
+  return mixed ? table +
+                     "\n\u2020 measured with another version of the program, of a technique or of the scene "
+                     "than the newest case\n"
                : table;
 }
 

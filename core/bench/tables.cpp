@@ -67,11 +67,13 @@ bool supersedes(const Row& row, const Row& before) {
   return effort(row.cost.frameMs) >= effort(before.cost.frameMs);
 }
 
-std::string newestProgram(std::span<const Row> rows) {
-  const Row* newest = nullptr;
-  for (const Row& row : rows)
-    if (!row.provenance.program.empty() && (newest == nullptr || row.line >= newest->line)) newest = &row;
-  return newest == nullptr ? std::string() : newest->provenance.program;
+NewestProvenance newestOf(std::span<const Row> rows) {
+  std::vector<const Row*> byAge;
+  for (const Row& row : rows) byAge.push_back(&row);
+  std::ranges::stable_sort(byAge, {}, &Row::line);
+  NewestProvenance newest;
+  for (const Row* row : byAge) newest.add(row->what.scene, row->provenance);
+  return newest;
 }
 
 /// Where rows were measured; "" is not known.
@@ -258,7 +260,7 @@ std::string referenceText(const Case& c) {
 }
 
 bool isOutdated(const Row& row, const Table& table) {
-  return row.provenance.program != table.program;
+  return table.newest.differs(row.what.scene, row.provenance);
 }
 
 std::vector<Table> makeTables(std::span<const Row> rows) {
@@ -296,7 +298,7 @@ std::vector<Table> makeTables(std::span<const Row> rows) {
   });
   for (Table& table : tables) {
     table.fileName = slug(table.title, names);
-    table.program = newestProgram(table.rows);
+    table.newest = newestOf(table.rows);
   }
   return tables;
 }
@@ -310,7 +312,9 @@ std::string toMarkdown(const Table& table) {
   text += markdownHead(heads);
   for (const Row& row : table.rows) text += markdownRow(markdownCells(parts.columns, row, table));
   if (std::ranges::any_of(table.rows, [&](const Row& row) { return isOutdated(row, table); }))
-    text += "\n\u2020 measured with another version of the program than the newest row\n";
+    text +=
+        "\n\u2020 measured with another version of the program, of a technique or of the scene than the "
+        "newest row\n";
   return text + comparisonMarkdown(table.rows);
 }
 

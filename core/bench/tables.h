@@ -18,14 +18,15 @@ struct Table {
   std::string title;     ///< for people, with as much as tells it from the others
   std::string fileName;  ///< of the CSV, unique among the tables of one makeTables
   std::vector<Row> rows;
-  std::string program = {};  ///< Provenance::program of its newest row; "" where none records it
+  NewestProvenance newest = {};  ///< of its rows
 };
 
 /// Returns what a case's reference was asked for: "against 256 spp", "against 1 % noise or 1024 spp, bounces
 /// 2"; bounces and interfaces where its term has them.
 LIMN_API std::string referenceText(const Case& c);
 
-/// Returns whether another program than that of the table's newest row measured the row.
+/// Returns whether the row was measured with another version of the program, of the scene or of a technique
+/// than the table's newest row, or the newest of that technique.
 LIMN_API bool isOutdated(const Row& row, const Table& table);
 
 /// Returns the rows as tables, grouped by scene first; failed rows are kept and shown as failed. Of rows of

@@ -48,7 +48,9 @@ std::optional<Result> Cache::get(const std::string& contentHash) const {
     result.image.metadata() = kept;
     result.noiseRms = *noise;
     result.spp = *spp;
-    result.seconds = numberOf<double>(result.image, "seconds");
+    const auto machine = metadata.find("machine");
+    const bool elsewhere = machine != metadata.end() && !machine_.empty() && machine->second != machine_;
+    if (!elsewhere) result.seconds = numberOf<double>(result.image, "seconds");
     return result;
   } catch (const Error&) {
     return std::nullopt;  // a broken file is rendered again
@@ -64,6 +66,7 @@ void Cache::put(const std::string& contentHash, const Result& result) const {
   Image image = result.image;
   image.metadata()["content_hash"] = contentHash;
   if (result.seconds) image.metadata()["seconds"] = fmt::format("{}", *result.seconds);
+  if (result.seconds && !machine_.empty()) image.metadata()["machine"] = machine_;
   writeExr(pathOf(contentHash), image);
 }
 

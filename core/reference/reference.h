@@ -144,7 +144,8 @@ struct Result {
   double noiseRms =
       0;  ///< RMS over pixels of the standard deviation of the mean, relative to the mean; Monte Carlo only
   int spp = 0;
-  std::optional<double> seconds{};  ///< that all samples took; older files of a cache do not say
+  /// Holds what all samples took. Files of a cache do not say where they are older, or another machine's.
+  std::optional<double> seconds{};
 };
 
 /// Renders the request. Throws UsageError for an invalid request (the message names the member and what is
@@ -156,14 +157,16 @@ LIMN_API Result render(const Request& request);
 /// code.
 LIMN_API std::string contentHash(const Request& request);
 
-/// Keeps finished references on disk: one EXR per content hash. Their metadata has content_hash and seconds
-/// besides that of render(). Threads must not share an object.
+/// Keeps finished references on disk: one EXR per content hash. Their metadata has content_hash, seconds and,
+/// where it is known, machine besides that of render(). Threads must not share an object.
 class LIMN_API Cache {
  public:
   /// Takes the folder, which is created when the first picture is put into it. `warn` is called once, with
-  /// one line, when pictures cannot be kept there; it may be empty.
-  explicit Cache(std::filesystem::path folder, std::function<void(const std::string&)> warn = {})
-      : folder_(std::move(folder)), warn_(std::move(warn)) {}
+  /// one line, when pictures cannot be kept there; it may be empty. `machine` names the one that renders: of
+  /// a picture that says another one, Result::seconds is not known. It may be empty: not compared.
+  explicit Cache(std::filesystem::path folder, std::function<void(const std::string&)> warn = {},
+                 std::string machine = {})
+      : folder_(std::move(folder)), warn_(std::move(warn)), machine_(std::move(machine)) {}
   std::filesystem::path pathOf(const std::string& contentHash) const;
   /// Returns the picture of that hash; nullopt if there is none, or if the file is broken or belongs to
   /// another hash.
@@ -179,6 +182,7 @@ class LIMN_API Cache {
 
   std::filesystem::path folder_;
   std::function<void(const std::string&)> warn_;
+  std::string machine_;
   std::deque<std::pair<std::string, Result>> kept_;  ///< pictures not stored in the folder, oldest first
   bool warned_ = false;
 };

@@ -53,7 +53,7 @@ BenchSession::BenchSession(const ContextOptions& context, const fs::path& out, s
                            const Warn& warn)
     : out_(out),
       alive_(std::move(alive)),
-      cache_(out / "references", warn),
+      cache_(out / "references", warn, bench::machineName()),
       context_(Context::create(context)),
       device_(*context_),
       registry_(TechniqueRegistry::defaultFolders(), warn) {}
@@ -123,27 +123,22 @@ Image BenchSession::unshadowed(const bench::Case& c, int light) {
   return render::supersample(loaded.renderer, loaded.view.camera, loaded.view.size, loaded.view.aa);
 }
 
-/// Sum over the lights of L_u * V_reference: what no visibility technique can beat.
+/// All light without shadows, less what the reference's 1 - V takes of each light: what no visibility
+/// technique can beat. Light that no technique shadows, as that of an environment without lights, stays
+/// whole.
 Image BenchSession::separationFloor(const bench::Case& c) {
   const int chosen = load(c).view.light;
   const size_t lights = load(c).view.pose.lights.size();
-  Image sum;
+  if (lights == 0) throw Error(fmt::format("scene {} has no light to separate", c.scene));
+  Image sum = unshadowed(c, chosen);
   for (size_t light = 0; light < lights; ++light) {
     if (chosen != scene::kNone && static_cast<size_t>(chosen) != light) continue;
     const Image v = cache_.render(request(c, Term::visibility, static_cast<int>(light))).image;
-    Image lit = unshadowed(c, static_cast<int>(light));
+    const Image lit = unshadowed(c, static_cast<int>(light));
     for (int y = 0; y < lit.height(); ++y)
       for (int x = 0; x < lit.width(); ++x)
-        for (int i = 0; i < 3; ++i) lit.at(x, y, i) *= v.at(x, y, v.channel("R"));
-    if (sum.empty()) {
-      sum = std::move(lit);
-      continue;
-    }
-    for (int y = 0; y < sum.height(); ++y)
-      for (int x = 0; x < sum.width(); ++x)
-        for (int i = 0; i < 3; ++i) sum.at(x, y, i) += lit.at(x, y, i);
+        for (int i = 0; i < 3; ++i) sum.at(x, y, i) -= lit.at(x, y, i) * (1 - v.at(x, y, v.channel("R")));
   }
-  if (sum.empty()) throw Error(fmt::format("scene {} has no light to separate", c.scene));
   return sum;
 }
 

@@ -20,13 +20,22 @@ namespace {
 
 constexpr const char* kMissing = "missing";
 
+/// Adds what is read with default lights; where it is not installed, a scene that wants them says so when it
+/// is measured.
+void addDefaultEnvironment(std::vector<fs::path>& files) {
+  try {
+    files.push_back(findDefaultEnvironment());
+  } catch (const Error&) {
+  }
+}
+
 /// Returns everything that is read from disk before the case can be seen.
 std::vector<fs::path> inputFiles(const bench::Case& c) {
   std::vector<fs::path> files = scene::filesOf(findScene(c.scene));
   if (!c.environment.empty())
     files.push_back(findEnvironment(c.environment));
   else if (c.defaultLights != "off")  // whether they are wanted is known once the scene is loaded
-    files.push_back(findDefaultEnvironment());
+    addDefaultEnvironment(files);
   const std::string& grid = c.grid;
   if (!grid.empty() && grid != "smoke" && grid != "none") files.emplace_back(grid);
   return files;

@@ -91,6 +91,19 @@ TEST_F(BenchCommand, ACrashLosesItsOwnRowOnly) {
               testing::HasSubstr("0 rows measured, 3 were there already, 1 failed"));
 }
 
+/// Of light that no technique shadows the floor has all, too: pictures of techniques have it.
+TEST_F(BenchCommand, TheSeparationFloorHasTheEnvironment) {
+  std::ofstream(folder_ / "suite.toml")
+      << "name = \"floor\"\nsizes = \"32x24\"\nframes = 0\nterm = \"direct\"\nseparation_floor = true\n"
+         "reference = {spp = 64}\n[[scenes]]\nscene = \"balls\"\nenvironment = \"studio\"\n"
+         "max_masked_share = 0.2\n[[techniques]]\ntechnique = \"hard_shadow_map\"\n";
+  ASSERT_EQ(bench("out", {"--filter", "separation_floor"}).status, 0);
+  std::smatch bias;
+  const std::string rows = contents(folder_ / "out" / "results.jsonl");
+  ASSERT_TRUE(std::regex_search(rows, bias, std::regex("\"bias\":([-+0-9.e]+)")));
+  EXPECT_GT(std::stod(bias[1]), 0) << "the environment is unshadowed, which makes it brighter than the truth";
+}
+
 TEST_F(BenchCommand, AFullDiskLosesOnlyWhatDidNotFit) {
   // References and one row first, while there is room.
   const auto suite = [&](const char* pictures) {

@@ -162,6 +162,16 @@ TEST(Regression, TimesOfTwoMachinesAreNotCompared) {
   EXPECT_TRUE(compareResults(before, now).changes[0].worse) << "errors are";
 }
 
+TEST(Regression, ScenesThatHaveChangedAreNamed) {
+  std::vector<Row> before = {row("a", 0.1, 5), row("b", 0.1, 5)}, now = {row("a", 0.2, 5), row("b", 0.1, 5)};
+  for (Row* known : {&before[0], &before[1], &now[1]}) known->provenance.scene = "files";
+  EXPECT_EQ(toMarkdown(compareResults(before, now)).find("changed"), std::string::npos) << "not recorded";
+  now[0].provenance.scene = "edited";
+  const std::string text = toMarkdown(compareResults(before, now));
+  EXPECT_NE(text.find("; the scenes of 1 have changed in between\n"), std::string::npos) << text;
+  EXPECT_NE(text.find("| worse, the scene has changed |"), std::string::npos) << text;
+}
+
 TEST(Regression, SlowerAndWorseAreFound) {
   const std::vector<Row> before = {row("slower", 0.1, 5), row("worse", 0.1, 5), row("better", 0.1, 5)};
   const std::vector<Row> now = {row("slower", 0.1, 6), row("worse", 0.103, 5), row("better", 0.09, 4)};

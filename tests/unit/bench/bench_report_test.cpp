@@ -213,6 +213,14 @@ TEST_F(BenchReport, StressResultsOfAnotherProgramAreMarked) {
                             {"case": "new"}])"));
 }
 
+TEST_F(BenchReport, StressResultsOfAnotherTechniqueAreMarked) {
+  writeTextFile(results() / "stress.json", R"({"results": [
+      {"case": "old", "provenance": {"program": "1", "techniques": [{"technique": "t", "hash": "1"}]}},
+      {"case": "new", "provenance": {"program": "1", "techniques": [{"technique": "t", "hash": "2"}, 3]}}]})");
+  EXPECT_EQ(data({row("pcss", 0.5f)})["stability"]["results"],
+            Json::parse(R"([{"case": "old", "outdated": true}, {"case": "new"}])"));
+}
+
 TEST_F(BenchReport, OnlyObjectsOfTheStressTableArePassedOn) {
   writeTextFile(
       results() / "stress.json",

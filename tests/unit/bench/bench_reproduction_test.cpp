@@ -248,6 +248,17 @@ TEST(Reproduction, EverySharedSettingThatDiffersIsNamed) {
   EXPECT_THAT(all, Not(HasSubstr("somewhere")));
 }
 
+TEST(Reproduction, VersionsThatDifferAreNamed) {
+  Row first = row("vssm", 30), second = row("vssm", 2);
+  first.provenance = {"1", "files", {{"vssm", "vssm.so", "a"}, {"airlight", "airlight.so", "b"}}};
+  second.provenance = first.provenance;
+  EXPECT_EQ(differingSettings(first, second), "none");
+  second.provenance = {"1", "edited", {{"vssm", "vssm.so", "c"}}};
+  EXPECT_EQ(differingSettings(first, second), "scene files files / edited, module vssm a / c");
+  second.what.scene = "another";
+  EXPECT_THAT(differingSettings(first, second), Not(HasSubstr("scene files"))) << "other scenes have others";
+}
+
 TEST(Reproduction, SettingsOfOneTechniqueDifferFromItsDefaults) {
   Row first = row("vssm", 30, "cells"), second = row("vssm", 2);
   EXPECT_EQ(differingSettings(first, second), "cells 1 / default");

@@ -59,6 +59,31 @@ TEST_F(BenchResume, ARowThatAnotherMachineBeganIsMeasuredAgain) {
   EXPECT_EQ(fakes.measurements, 5);
 }
 
+/// As limn tune asks for it: one answer compares all rows of a folder.
+TEST_F(BenchResume, ARowOfAnotherMachineIsMeasuredAgainWhereThisOneAloneCounts) {
+  const std::vector<Case> cases = {exampleCase("pcss", 16)};
+  Row known = exampleRow(cases[0], 0.5);
+  known.cost.machine = "a";
+  known.cost.driver = "1";
+  const auto measured = [&](const std::string& machine, const std::string& driver, bool hereAlone) {
+    writeTextFile(path_, toJson(known) + "\n");
+    Fakes fakes;
+    ResultsFile results(path_);
+    Callbacks callbacks = fakes.callbacks();
+    callbacks.machine = machine;
+    callbacks.driver = driver;
+    callbacks.hereAlone = hereAlone;
+    runCases(cases, "llvmpipe", results, callbacks);
+    return fakes.measurements;
+  };
+  EXPECT_EQ(measured("b", "1", false), 0) << "tables keep it apart";
+  EXPECT_EQ(measured("a", "1", true), 0);
+  EXPECT_EQ(measured("b", "1", true), 1);
+  EXPECT_EQ(measured("a", "2", true), 1);
+  known.cost.machine.clear();
+  EXPECT_EQ(measured("b", "1", true), 0) << "an earlier version does not say its machine";
+}
+
 TEST_F(BenchResume, WhatTheSuiteSaysAnewIsNotLeftAsItWas) {
   Case asked = exampleCase();
   Fakes fakes;

@@ -64,6 +64,18 @@ TEST(StressedScene, WhatScattersFollowsItsSurface) {
             scene::subsurfaceAbsorption(glm::vec3(0.5f, 0.6f, 0.7f), 3));
 }
 
+TEST(StressedScene, BodiesAbsorbAsMuchAtEveryScale) {
+  scene::Scene scene;
+  scene.materials.resize(2);
+  scene.materials[0].thickness = 0.5f;
+  scene.materials[0].attenuationDistance = 0.25f;
+  const scene::Scene scaled = stressed(scene, StressChange::sceneScale, 1024);
+  EXPECT_EQ(scaled.materials[0].thickness, 512);
+  EXPECT_EQ(scaled.materials[0].attenuationDistance, 256);
+  EXPECT_EQ(scaled.materials[1].thickness, 0) << "a sheet stays one";
+  EXPECT_EQ(scaled.materials[1].attenuationDistance, 0) << "without absorption";
+}
+
 StressResult severalTerms() {
   return {.technique = "t",
           .name = "three bounces",
@@ -103,10 +115,23 @@ TEST(BenchStress, ResultsOfAnotherProgramAreMarked) {
   for (StressResult& result : results) result.provenance.program = "1";
   EXPECT_THAT(toMarkdown(results), testing::Not(testing::HasSubstr("\u2020")));
   results[1].provenance.program = "2";
+  EXPECT_THAT(
+      toMarkdown(results),
+      testing::AllOf(testing::HasSubstr("| old \u2020 |"), testing::HasSubstr("| t |"),
+                     testing::EndsWith("\n\n\u2020 measured with another version of the program, of a "
+                                       "technique or of the scene than the newest case\n")));
+}
+
+TEST(BenchStress, ResultsOfAnotherTechniqueAreMarked) {
+  StressResult results[] = {severalTerms(), severalTerms(), severalTerms()};
+  results[1].technique = "other";
+  for (StressResult& result : results)
+    result.provenance = {"1", "scene", {{result.technique, result.technique + ".so", "old"}}};
+  EXPECT_THAT(toMarkdown(results), testing::Not(testing::HasSubstr("\u2020")));
+  results[2].provenance.modules[0].hash = "new";
   EXPECT_THAT(toMarkdown(results),
-              testing::AllOf(testing::HasSubstr("| old \u2020 |"), testing::HasSubstr("| t |"),
-                             testing::EndsWith("\n\n\u2020 measured with another version of the program than "
-                                               "the newest case\n")));
+              testing::AllOf(testing::HasSubstr("| t \u2020 |"), testing::HasSubstr("| t |"),
+                             testing::HasSubstr("| other |")));
 }
 
 TEST(BenchStress, JsonKeepsEveryTermAndLeavesOutResultsOfOne) {

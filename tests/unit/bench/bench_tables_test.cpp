@@ -118,11 +118,37 @@ TEST(BenchTables, RowsOfAnotherProgramAreMarked) {
   const std::string text = toMarkdown(makeTables(rows).front());
   EXPECT_NE(text.find("| old \u2020 |"), std::string::npos) << text;
   EXPECT_NE(text.find("| new |"), std::string::npos) << text;
-  EXPECT_NE(text.find("\n\u2020 measured with another version of the program than the newest row\n"),
-            std::string::npos)
+  EXPECT_NE(
+      text.find("\n\u2020 measured with another version of the program, of a technique or of the scene than "
+                "the newest row\n"),
+      std::string::npos)
       << text;
   rows[0].line = 4;  // the row was measured again, with the program of before
   EXPECT_NE(toMarkdown(makeTables(rows).front()).find("| vssm \u2020 |"), std::string::npos);
+}
+
+/// A technique that was built again, or a scene that was edited, leaves the program as it was.
+TEST(BenchTables, RowsOfAnotherTechniqueOrSceneAreMarked) {
+  std::vector<Row> rows = {exampleRow(exampleCase("pcss", 16)), exampleRow(exampleCase("vssm")),
+                           exampleRow(exampleCase("pcss", 64))};
+  for (std::size_t i = 0; i < rows.size(); ++i) {
+    const std::string& technique = rows[i].what.technique;
+    rows[i].provenance = {"1", "scene", {{technique, technique + ".so", "hash of " + technique}}};
+    rows[i].line = i + 1;
+  }
+  const auto marked = [&] {
+    const Table table = makeTables(rows).front();
+    std::vector<bool> result;
+    for (const Row& row : table.rows) result.push_back(isOutdated(row, table));
+    return result;
+  };
+  EXPECT_EQ(marked(), (std::vector<bool>{false, false, false}));
+  rows[2].provenance.modules[0].hash = "new";
+  EXPECT_EQ(marked(), (std::vector<bool>{true, false, false})) << "vssm is what it was";
+  rows[2].provenance.scene = "edited";
+  EXPECT_EQ(marked(), (std::vector<bool>{true, true, false}));
+  rows[2].line = 0;
+  EXPECT_EQ(marked(), (std::vector<bool>{false, false, true})) << "not the last row counts but the newest";
 }
 
 TEST(BenchTables, TitlesTellTablesApart) {

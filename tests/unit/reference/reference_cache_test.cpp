@@ -43,6 +43,21 @@ TEST(ReferenceWork, CacheReturnsWhatWasRendered) {
   EXPECT_TRUE(cache.get(contentHash(world.request(16, Term::direct, 16))).has_value());
 }
 
+/// Times of one machine must not stand beside those of another, as where a folder of results went to one.
+TEST(ReferenceWork, OfAPictureOfAnotherMachineTheCacheKnowsNoTime) {
+  const Folder folder;
+  const World world = busyWorld();
+  const Request request = world.request(16, Term::direct, 4);
+  const auto at = [&](const std::string& machine) { return Cache(folder.path(), {}, machine); };
+  const Result first = at("a").render(request);
+  EXPECT_GT(first.seconds, 0);
+  EXPECT_EQ(at("a").render(request).seconds, first.seconds);
+  EXPECT_EQ(at("").render(request).seconds, first.seconds) << "not compared";
+  const Result elsewhere = at("b").render(request);
+  EXPECT_TRUE(sameBits(elsewhere.image, first.image)) << "not rendered again";
+  EXPECT_EQ(elsewhere.seconds, std::nullopt);
+}
+
 TEST(ReferenceWork, ACacheThatCannotBeWrittenKeepsReferencesInMemoryAndSaysSoOnce) {
   const Folder folder;
   const auto blocked = folder.path() / "file";
