@@ -41,6 +41,7 @@ int runCompare(const CompareArguments& options) {
   if (!options.diff.empty()) {
     checkExtension("--diff", options.diff, {".png"});
     checkWritable(options.diff);
+    checkApart({options.diff}, {options.image, options.reference});
   }
   const Image image = readImage(options.image), reference = readImage(options.reference);
   const auto term = reference.metadata().find("term");

@@ -97,6 +97,7 @@ int runEnvironment(const EnvironmentArguments& options) {
   if (!options.overlay.empty()) {
     checkExtension("--overlay", options.overlay, {".png", ".exr"});
     checkWritable(options.overlay);
+    checkApart({options.overlay}, {options.map});
   }
   std::vector<std::string> warnings;
   const scene::Environment map = scene::loadEnvironment(session::findEnvironment(options.map), warnings);
@@ -131,11 +132,15 @@ Action addEnvironmentCommand(CLI::App& command) {
   addSceneFlag(command, options->lights, "environment_lights", "--lights");
   addSceneFlag(command, options->lights, "environment_resolution", "--resolution");
   addSceneFlag(command, options->lights, "environment_shape", "--shape");
-  command.add_option("--overlay", options->overlay, "Write the map with the lights' outlines: .png or .exr");
+  CLI::Option* overlay = command.add_option("--overlay", options->overlay,
+                                            "Write the map with the lights' outlines: .png or .exr");
   command.add_option("--width", options->width, "Width of the overlay, pixels")
       ->capture_default_str()
-      ->check(CLI::Range(16, 16384));
-  command.add_option("--exposure", options->exposure, "Exposure of the overlay, EV")->check(exposureRange());
+      ->check(CLI::Range(16, 16384))
+      ->needs(overlay);
+  command.add_option("--exposure", options->exposure, "Exposure of the overlay, EV")
+      ->check(exposureRange())
+      ->needs(overlay);
   command.add_flag("--json", options->json, "Print JSON instead of a table");
   return [options] { return runEnvironment(*options); };
 }

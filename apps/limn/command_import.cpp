@@ -115,6 +115,7 @@ int run(const fs::path& model, fs::path out) {
   }
   if (out.extension() != ".glb")
     throw UsageError(fmt::format("--out {}: a file with the extension .glb is written", out.string()));
+  checkApart({out}, {model});
   if (!programExists(kConverter))
     throw Error(
         "models of other formats are read by assimp, which is not installed: apt-get install assimp-utils");

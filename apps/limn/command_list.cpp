@@ -97,7 +97,7 @@ int runList(const ListArguments& options) {
   if (const auto names = kNames.find(options.what); names != kNames.end()) {
     const std::vector<std::string> found = names->second();
     if (options.json)
-      fmt::print("{}\n", nlohmann::ordered_json{{options.what, found}}.dump(2));
+      printAsJson(nlohmann::ordered_json{{options.what, found}});
     else
       for (const std::string& name : found) fmt::print("{}\n", name);
     return 0;

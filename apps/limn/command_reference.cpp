@@ -2,6 +2,7 @@
 #include <fmt/format.h>
 
 #include <charconv>
+#include <limits>
 #include <optional>
 #include <string>
 #include <vector>
@@ -36,16 +37,30 @@ struct ReferenceArguments {
   fs::path out, cache;
 };
 
+template <class Integer>
+std::optional<Integer> parseWhole(const std::string& text) {
+  Integer value = 0;
+  const auto [end, error] = std::from_chars(text.data(), text.data() + text.size(), value);
+  return error == std::errc{} && end == text.data() + text.size() ? std::optional(value) : std::nullopt;
+}
+
+/// CLI11 takes -1 for the largest number there is, and larger ones as well.
+uint64_t parseSeed(const std::string& text) {
+  const auto seed = parseWhole<uint64_t>(text);
+  if (!seed)
+    throw UsageError(fmt::format("--seed '{}' is not accepted; expected a whole number from 0 to {}", text,
+                                 std::numeric_limits<uint64_t>::max()));
+  return *seed;
+}
+
 /// "all", or a number.
 int parseInterfaces(const std::string& text) {
   if (text == "all") return reference::kAllInterfaces;
-  int value = 0;
-  const auto [end, error] = std::from_chars(text.data(), text.data() + text.size(), value);
-  if (error != std::errc{} || end != text.data() + text.size() || value < 0 ||
-      value > reference::kMaxInterfaces)
+  const auto value = parseWhole<int>(text);
+  if (!value || *value < 0 || *value > reference::kMaxInterfaces)
     throw UsageError(fmt::format("--interfaces '{}' is not accepted; expected 0 to {}, or all", text,
                                  reference::kMaxInterfaces));
-  return value;
+  return *value;
 }
 
 reference::Request makeRequest(const ReferenceArguments& options, const session::View& view) {
@@ -84,6 +99,7 @@ int runAtVertices(const ReferenceArguments& options, const session::View& view, 
 int runReference(const ReferenceArguments& options) {
   checkExtension("--out", options.out, {".exr", ".png"});
   checkWritable(options.out);
+  checkApart({options.out}, {options.scene.scene, options.scene.environment});
   const session::View view = session::open(options.scene, warn);
   reference::Request request = makeRequest(options, view);
   loadPictureLibrary();
@@ -154,7 +170,11 @@ Action addReferenceCommand(CLI::App& command) {
       ->needs(atVertices)
       ->capture_default_str()
       ->check(realRange(0.005, 1e3));
-  command.add_option("--seed", options->seed, "Seed of the random numbers");
+  command
+      .add_option_function<std::string>(
+          "--seed", [options](const std::string& text) { options->seed = parseSeed(text); },
+          "Seed of the random numbers")
+      ->type_name("UINT");
   command.add_option("--threads", options->threads, "0: all cores")->check(CLI::Range(0, 1024));
   options->tone.addTo(command);
   command.add_option("--cache", options->cache,

@@ -26,6 +26,14 @@ void checkCommand(const CLI::App& limn, const std::string& name) {
                          limn::joined(known));
 }
 
+/// Throws Error unless all that was printed has been written. Of what failed before the end only the stream's
+/// mark is left.
+void checkStandardOutput() {
+  if (std::fflush(stdout) != 0)
+    throw limn::Error(std::string("standard output cannot be written: ") + std::strerror(errno));
+  if (std::ferror(stdout) != 0) throw limn::Error("standard output cannot be written");
+}
+
 }  // namespace
 
 int main(int argc, char** argv) {
@@ -94,13 +102,14 @@ int main(int argc, char** argv) {
     try {
       limn.parse(argc, argv);
     } catch (const CLI::ParseError& error) {
-      return limn.exit(error) == 0 ? 0 : 2;
+      const int status = limn.exit(error) == 0 ? 0 : 2;
+      checkStandardOutput();
+      return status;
     }
     std::optional<SilentStderr> silence;
     if (quiet) silence.emplace();
     const int status = action();
-    if (std::fflush(stdout) != 0)
-      throw limn::Error(std::string("standard output cannot be written: ") + std::strerror(errno));
+    checkStandardOutput();
     return status;
   });
 }

@@ -13,12 +13,14 @@
 #include <cstdio>
 #include <cstring>
 #include <nlohmann/json.hpp>
+#include <set>
 #include <system_error>
 #include <utility>
 
 #include "apps/limn/interruption.h"
 #include "core/base/error.h"
 #include "core/base/failure.h"
+#include "core/base/file.h"
 #include "core/base/text.h"
 
 namespace limn::app {
@@ -27,6 +29,14 @@ namespace {
 
 std::atomic<int> errorFile = STDERR_FILENO;
 static_assert(std::atomic<int>::is_always_lock_free, "a signal handler reads it");
+
+/// Where a standard file is closed, the next file that is opened would take its number, and what is printed
+/// would be written to it. Results are an error then, as before; messages are lost.
+void holdStandardFiles() {
+  for (int file = STDIN_FILENO; file <= STDERR_FILENO; ++file)
+    if (fcntl(file, F_GETFD) < 0) [[maybe_unused]]
+      const int held = open("/dev/null", file == STDERR_FILENO ? O_WRONLY : O_RDONLY);
+}
 
 }  // namespace
 
@@ -39,9 +49,24 @@ void checkWritable(const fs::path& file) {
   std::error_code ignored;
   if (fs::is_directory(file, ignored))
     throw Error(fmt::format("{}: cannot be written: it is a folder", file.string()));
+  if (isSpecialFile(file))
+    throw Error(fmt::format("{}: cannot be written: it is not a regular file", file.string()));
   const fs::path folder = file.has_parent_path() ? file.parent_path() : ".";
   if (access(folder.c_str(), W_OK | X_OK) != 0)
     throw Error(fmt::format("{}: cannot be written: {}", file.string(), std::strerror(errno)));
+}
+
+void checkApart(const std::vector<fs::path>& written, const std::vector<fs::path>& read) {
+  std::set<fs::path> taken;
+  const auto take = [&](const fs::path& file) {
+    std::error_code unknown;
+    return file.empty() || taken.insert(fs::weakly_canonical(fs::absolute(file, unknown), unknown)).second;
+  };
+  for (const fs::path& file : read) take(file);
+  for (const fs::path& file : written)
+    if (!take(file))
+      throw UsageError(
+          fmt::format("{}: cannot be written: another argument names the same file", file.string()));
 }
 
 void checkExtension(const char* option, const fs::path& file, const std::vector<std::string>& extensions) {
@@ -145,7 +170,9 @@ SilentStderr::~SilentStderr() {
 }
 
 int guarded(const std::function<int()>& work) {
+  holdStandardFiles();
   std::signal(SIGXFSZ, SIG_IGN);
+  std::signal(SIGCHLD, SIG_DFL);  // some parents ignore it, and how programs end would stay unknown
   try {
     return work();
   } catch (const Interrupted& interruption) {

@@ -34,6 +34,11 @@ std::filesystem::path programBeside(const std::string& name);
 /// be lost otherwise.
 void checkWritable(const std::filesystem::path& file);
 
+/// Throws UsageError where two of the files that are to be written are one, or one of them is a file that is
+/// read: one of the two would be lost. Empty names stand for no file.
+void checkApart(const std::vector<std::filesystem::path>& written,
+                const std::vector<std::filesystem::path>& read = {});
+
 /// Throws UsageError unless the name ends in one of `extensions`, such as ".png". `option` is what gave it.
 void checkExtension(const char* option, const std::filesystem::path& file,
                     const std::vector<std::string>& extensions);
@@ -88,7 +93,9 @@ class SilentStderr {
 };
 
 /// Runs `work`, reports what it throws (including Interrupted) in one line on stderr, and returns the exit
-/// status. A file that grows beyond the limit of the process is that file's error, not the program's end.
+/// status. A file that grows beyond the limit of the process is that file's error, not the program's end. How
+/// programs end that it starts is known even where whoever started this one ignores SIGCHLD, and no file is
+/// opened in the place of a standard one that is closed.
 int guarded(const std::function<int()>& work);
 
 /// Prints what --json asks for on stdout. Bytes of names that are not UTF-8 are replaced.

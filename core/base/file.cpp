@@ -146,6 +146,13 @@ std::string readTextFile(const std::filesystem::path& path, std::uint64_t maxByt
   return readInto<std::string>(path, maxBytes);
 }
 
+std::string readBeginning(const std::filesystem::path& path, std::uint64_t bytes) {
+  SourceFile file(path);
+  std::string content(std::min(file.size(), bytes), '\0');
+  content.resize(file.read(std::as_writable_bytes(std::span(content))));
+  return content;
+}
+
 std::uint64_t readLines(const std::filesystem::path& path,
                         const std::function<void(const std::string&)>& take, std::uint64_t maxBytes) {
   SourceFile file(path);
@@ -172,8 +179,20 @@ std::uint64_t readLines(const std::filesystem::path& path,
   return whole;
 }
 
-TemporaryFile::TemporaryFile(std::filesystem::path target)
-    : target_(std::move(target)), file_(openTemporary(target_, path_)) {
+bool isSpecialFile(const std::filesystem::path& path) {
+  std::error_code ignored;
+  const std::filesystem::file_status status = std::filesystem::status(path, ignored);
+  if (std::filesystem::exists(status) && !std::filesystem::is_regular_file(status) &&
+      !std::filesystem::is_directory(status))
+    return true;
+  // Of /dev/stdout, which may lead to a regular file.
+  return std::filesystem::read_symlink(path, ignored).string().starts_with("/proc/");
+}
+
+TemporaryFile::TemporaryFile(std::filesystem::path target) : target_(std::move(target)) {
+  if (isSpecialFile(target_))
+    throw Error(fmt::format("{}: cannot be written: it is not a regular file", target_.string()));
+  file_ = openTemporary(target_, path_);
   if (file_ < 0) failWrite(target_, errno);
 }
 

@@ -21,12 +21,20 @@ LIMN_API std::vector<std::byte> readFile(const std::filesystem::path& path,
 LIMN_API std::string readTextFile(const std::filesystem::path& path,
                                   std::uint64_t maxBytes = std::uint64_t{1} << 30);
 
+/// Returns the first `bytes` bytes of a regular file, all where it has no more. Throws Error naming the file
+/// when it is missing or unreadable.
+LIMN_API std::string readBeginning(const std::filesystem::path& path, std::uint64_t bytes);
+
 /// Hands each line of a regular file that ends in '\n' to `take`, without that. Returns the bytes of these
 /// lines: what follows them is torn. No more than one line is held at a time. Throws Error naming the file
 /// when it is missing, unreadable or has a line of more than `maxBytes`.
 LIMN_API std::uint64_t readLines(const std::filesystem::path& path,
                                  const std::function<void(const std::string&)>& take,
                                  std::uint64_t maxBytes = std::uint64_t{1} << 30);
+
+/// Returns whether `path` names something that a file must not take the place of: a device, a pipe, a socket,
+/// or what a process has open (/dev/stdout).
+LIMN_API bool isSpecialFile(const std::filesystem::path& path);
 
 /// Holds a new file beside `target` that gets that name when it is whole. Other programs may write to it. It
 /// is gone when its holder ends before that; where the process is killed, removeAbandonedFiles() removes it.
@@ -47,13 +55,13 @@ class LIMN_API TemporaryFile {
 
  private:
   std::filesystem::path target_, path_;
-  int file_;
+  int file_ = -1;
   bool kept_ = false;
 };
 
 /// Writes to a temporary file beside `path`, flushes it and renames it: readers see the old file or the new
-/// one, never a part. Throws Error naming `path` and the reason (no such folder, no permission, disk full)
-/// and leaves nothing behind.
+/// one, never a part. Throws Error naming `path` and the reason (no such folder, no permission, disk full, a
+/// special file) and leaves nothing behind.
 LIMN_API void writeFile(const std::filesystem::path& path, std::span<const std::byte> bytes);
 LIMN_API void writeTextFile(const std::filesystem::path& path, std::string_view text);
 

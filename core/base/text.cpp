@@ -23,6 +23,16 @@ size_t editDistance(std::string_view a, std::string_view b) {
   return row[b.size()];
 }
 
+/// Returns how many of the first `limit` bytes of `text` are whole characters of UTF-8. Bytes that are not
+/// UTF-8 count as characters.
+size_t wholeCharacters(std::string_view text, size_t limit) {
+  constexpr size_t longest = 4;  // bytes of a character
+  const auto continues = [&](size_t at) { return (static_cast<unsigned char>(text[at]) & 0xc0) == 0x80; };
+  size_t end = limit;
+  while (limit < text.size() && end > 0 && limit - end < longest && continues(end)) --end;
+  return limit - end < longest ? end : limit;
+}
+
 }  // namespace
 
 std::optional<double> parseNumber(std::string_view text) {
@@ -35,9 +45,15 @@ std::optional<double> parseNumber(std::string_view text) {
 
 std::string oneLine(std::string_view text, size_t limit) {
   text = text.substr(0, text.find_last_not_of(" \t\r\n") + 1);  // npos + 1 is 0
-  std::string line(text.substr(0, limit));
-  std::replace_if(
-      line.begin(), line.end(), [](char c) { return static_cast<unsigned char>(c) < 32 || c == 127; }, '?');
+  const std::string_view shown = text.substr(0, wholeCharacters(text, limit));
+  std::string line;
+  for (size_t i = 0; i < shown.size(); ++i) {
+    const auto byte = [&](size_t at) { return static_cast<unsigned char>(shown[at]); };
+    // U+0080 to U+009F, which terminals obey as well.
+    const bool pair = byte(i) == 0xc2 && i + 1 < shown.size() && byte(i + 1) >= 0x80 && byte(i + 1) < 0xa0;
+    line += byte(i) < 32 || byte(i) == 127 || pair ? '?' : shown[i];
+    i += pair ? 1 : 0;
+  }
   return text.size() > limit ? line + "..." : line;
 }
 

@@ -14,8 +14,8 @@ namespace limn {
 /// Returns the whole of `text` as a finite number, or nothing if it is not one.
 LIMN_API std::optional<double> parseNumber(std::string_view text);
 
-/// Returns `text` as messages show it: one line without trailing white space, other line ends as ' ', control
-/// characters as '?', and at most `limit` bytes of the text.
+/// Returns `text` as messages show it: one line without trailing white space, line ends and other control
+/// characters as '?', and at most `limit` bytes of the text, no part of a character of UTF-8 among them.
 LIMN_API std::string oneLine(std::string_view text, size_t limit = 600);
 
 /// Returns the names as a list: "a, b and c".

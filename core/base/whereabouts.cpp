@@ -92,7 +92,7 @@ void describeCrash(int signal, char* to, std::size_t size) noexcept {
 
 void leaveWordsAtCrash(const char* program) {
   crashProgram = program;
-  if (crashStderr < 0) crashStderr = fcntl(STDERR_FILENO, F_DUPFD_CLOEXEC, 0);
+  if (crashStderr < 0) crashStderr = fcntl(STDERR_FILENO, F_DUPFD_CLOEXEC, STDERR_FILENO + 1);
   crashText = nullptr;
   handleCrashes();
 }

@@ -6,11 +6,11 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
-#include <cstdlib>
 #include <limits>
 #include <string>
 
 #include "core/base/error.h"
+#include "core/base/text.h"
 #include "core/image/private/flip.h"
 #include "core/image/private/row_filter.h"
 #include "glsl/numeric/srgb.glsl"
@@ -302,15 +302,14 @@ std::optional<double> noiseFloor(const Image& reference, std::span<const float> 
     return 3.0 * std::sqrt(meanVariance(reference, *variance, result));
   const auto found = reference.metadata().find("noise_rms");
   if (found == reference.metadata().end()) return std::nullopt;
-  char* end = nullptr;
-  const double relative = std::strtod(found->second.c_str(), &end);
-  if (end == found->second.c_str() || *end != '\0' || !(relative >= 0.0) || !std::isfinite(relative)) {
+  const std::optional<double> relative = parseNumber(found->second);
+  if (!relative || *relative < 0) {
     throw Error(
         fmt::format("compare: the reference's noise_rms is '{}'; a number >= 0 is accepted", found->second));
   }
   double mean = 0;
   for (const float value : rgb) mean += value;
-  return 3.0 * relative * std::abs(mean) / static_cast<double>(rgb.size());
+  return 3.0 * *relative * std::abs(mean) / static_cast<double>(rgb.size());
 }
 
 }  // namespace

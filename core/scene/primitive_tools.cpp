@@ -29,6 +29,21 @@ void flattenTarget(const Primitive& p, MorphTarget& target) {
   }
 }
 
+template <class T>
+void appendCopies(std::vector<T>& values, const std::vector<uint32_t>& of) {
+  if (values.empty()) return;
+  values.reserve(values.size() + of.size());
+  for (const uint32_t vertex : of) values.push_back(values[vertex]);
+}
+
+/// Of a triangle in the texture: 1 or -1 by its winding, 0 where it has no area.
+int windingOf(const std::vector<glm::vec2>& uvs, const uint32_t* corner) {
+  const glm::dvec2 s = glm::dvec2(uvs[corner[1]]) - glm::dvec2(uvs[corner[0]]);
+  const glm::dvec2 r = glm::dvec2(uvs[corner[2]]) - glm::dvec2(uvs[corner[0]]);
+  const double area = s.x * r.y - r.x * s.y;
+  return area > 0 ? 1 : area < 0 ? -1 : 0;
+}
+
 constexpr double kTolerance = 1e-3;
 
 }  // namespace
@@ -48,6 +63,37 @@ void splitFlat(Primitive& p) {
   }
   for (MorphTarget& target : p.morphTargets) flattenTarget(p, target);
   for (std::size_t i = 0; i < p.indices.size(); ++i) p.indices[i] = static_cast<uint32_t>(i);
+}
+
+void splitMirrored(Primitive& p) {
+  if (p.uvs.empty()) return;
+  const std::size_t vertices = p.positions.size();
+  std::vector<std::int8_t> winding(vertices, 0);  // of the first triangle that has one
+  std::vector<uint32_t> twin(vertices, 0);        // 0: none, which vertex 0 cannot be
+  std::vector<uint32_t> copied;
+  for (std::size_t i = 0; i + 2 < p.indices.size(); i += 3) {
+    const int here = windingOf(p.uvs, &p.indices[i]);
+    for (std::size_t corner = i; here != 0 && corner < i + 3; ++corner) {
+      const uint32_t vertex = p.indices[corner];
+      if (winding[vertex] == 0) winding[vertex] = static_cast<std::int8_t>(here);
+      if (winding[vertex] == here) continue;
+      if (twin[vertex] == 0) {
+        twin[vertex] = static_cast<uint32_t>(vertices + copied.size());
+        copied.push_back(vertex);
+      }
+      p.indices[corner] = twin[vertex];
+    }
+  }
+  appendCopies(p.positions, copied);
+  appendCopies(p.normals, copied);
+  appendCopies(p.uvs, copied);
+  appendCopies(p.colours, copied);
+  appendCopies(p.joints, copied);
+  appendCopies(p.weights, copied);
+  for (MorphTarget& target : p.morphTargets) {
+    appendCopies(target.positions, copied);
+    appendCopies(target.normals, copied);
+  }
 }
 
 void computeBounds(Primitive& p) {

@@ -9,6 +9,11 @@ namespace limn::scene {
 /// means flat). Morph targets get the change of that normal at weight 1.
 void splitFlat(Primitive& primitive);
 
+/// Gives each vertex that triangles share which are wound either way in the texture a twin for the mirrored
+/// ones, so that tangents that are generated are those of one side (as MikkTSpace's are). The primitive has
+/// no tangents yet.
+void splitMirrored(Primitive& primitive);
+
 /// Computes bounds, jointBounds and the morph targets' deltaBounds.
 void computeBounds(Primitive& primitive);
 

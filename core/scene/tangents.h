@@ -13,9 +13,8 @@ namespace limn::scene {
 /// and 3.9.3). Directions are those of MikkTSpace; the sign of w is the opposite. Each triangle's direction
 /// of increasing u (Lengyel 2001, "Computing Tangent Space Basis Vectors for an Arbitrary Mesh") is projected
 /// onto the vertex's tangent plane and accumulated with the triangle's angle at the vertex as its weight; w
-/// follows the winding of the majority by the same weight. Vertices are not split: where mirrored texture
-/// halves share vertices, the seam is one triangle wide. A vertex without a usable direction gets any
-/// perpendicular, with w = 1.
+/// follows the winding of the majority by the same weight: mirrored halves of a texture need vertices of
+/// their own (splitMirrored). A vertex without a usable direction gets any perpendicular, with w = 1.
 LIMN_API std::vector<glm::vec4> generateTangents(std::span<const glm::vec3> positions,
                                                  std::span<const glm::vec3> normals,
                                                  std::span<const glm::vec2> uvs,

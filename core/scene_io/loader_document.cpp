@@ -254,6 +254,17 @@ void Loader::takeBuffers(Document& document, std::span<const std::byte> binary) 
   json& root = document.root;
   const auto list = root.find("buffers");
   if (list == root.end()) return;
+  // Each is read once, however many buffers name it.
+  std::map<std::filesystem::path, std::span<const std::byte>> files;
+  const auto contentOf = [&](const std::string& uri, const std::string& what) {
+    const auto read = [&]() -> std::span<const std::byte> {
+      return bufferStorage_.emplace_back(readUri(uri, what, kMaxFileBytes));
+    };
+    if (isDataUri(uri)) return read();
+    const auto [file, isNew] = files.try_emplace(resolve(uri, what));
+    if (isNew) file->second = read();
+    return file->second;
+  };
   for (std::size_t i = 0; i < list->size(); ++i) {
     const json& buffer = (*list)[i];
     const std::string what = fmt::format("buffer {}", i);
@@ -265,8 +276,7 @@ void Loader::takeBuffers(Document& document, std::span<const std::byte> binary) 
       continue;
     }
     if (uri != buffer.end()) {
-      bufferStorage_.push_back(readUri(uri->get<std::string>(), what, kMaxFileBytes));
-      content = bufferStorage_.back();
+      content = contentOf(uri->get_ref<const std::string&>(), what);
     } else if (i != 0) {
       fail(fmt::format("{} has no uri; only buffer 0 may be the GLB's binary chunk", what));
     }

@@ -3,6 +3,7 @@
 
 #include <algorithm>
 #include <cstring>
+#include <limits>
 #include <nlohmann/json.hpp>
 #include <set>
 #include <string_view>
@@ -37,13 +38,16 @@ std::string percentDecoded(const std::string& uri) {
   return out;
 }
 
-/// The JSON of a .gltf or .glb: the first chunk, behind 12 bytes of header and 8 of its own.
-std::string_view documentOf(std::string_view file) {
+/// The JSON of a .gltf or .glb: of the latter the first chunk, behind 12 bytes of header and 8 of its own.
+/// What follows it may be large.
+std::string documentOf(const std::filesystem::path& scene) {
   constexpr std::size_t chunk = 20;
+  const std::string head = readBeginning(scene, chunk);
+  if (!head.starts_with("glTF") || head.size() < chunk)
+    return readBeginning(scene, std::numeric_limits<std::uint64_t>::max());
   std::uint32_t length = 0;
-  if (!file.starts_with("glTF") || file.size() < chunk) return file;
-  std::memcpy(&length, file.data() + 12, sizeof length);
-  return file.substr(chunk, length);
+  std::memcpy(&length, head.data() + 12, sizeof length);
+  return readBeginning(scene, chunk + std::uint64_t{length}).substr(chunk);
 }
 
 bool isInside(const std::filesystem::path& file, const std::filesystem::path& folder) {
@@ -141,8 +145,7 @@ std::vector<std::filesystem::path> filesOf(const std::filesystem::path& scene) {
     if (!known.insert(name).second || !std::filesystem::is_regular_file(folder / name, ignored)) return;
     files.push_back(folder / name);
   };
-  const std::string text = readTextFile(scene);
-  const nlohmann::json document = nlohmann::json::parse(documentOf(text), nullptr, false);
+  const nlohmann::json document = nlohmann::json::parse(documentOf(scene), nullptr, false);
   std::vector<const nlohmann::json*> left = {&document};  // no recursion: nobody has looked at its depth
   while (!left.empty()) {
     const nlohmann::json& value = *left.back();

@@ -256,6 +256,9 @@ void Loader::completePrimitive(Primitive& out, const std::string& what) {
   if (!material.tangents()) {
     out.tangents.clear();
   } else if (out.tangents.empty()) {
+    const std::size_t vertices = out.positions.size();
+    splitMirrored(out);
+    spend((out.positions.size() - vertices) * (1 + out.morphTargets.size()), what);
     out.tangents = generateTangents(out.positions, out.normals, out.uvs, out.indices);
   } else {
     std::vector<glm::vec4> own;

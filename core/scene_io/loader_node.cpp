@@ -3,11 +3,14 @@
 
 #include <algorithm>
 #include <cmath>
+#include <glm/gtc/matrix_access.hpp>
 
 #include "core/scene_io/private/loader.h"
 
 namespace limn::scene {
 namespace {
+
+constexpr float kRounding = 1e-5f;  ///< of the last row of a matrix that a program has multiplied
 
 bool inRange(int index, std::size_t size) {
   return index >= 0 && static_cast<std::size_t>(index) < size;
@@ -110,7 +113,10 @@ Node Loader::readNode(const tinygltf::Node& source, const std::string& what) {
     glm::mat4 m;
     for (std::size_t i = 0; i < 16; ++i)
       m[static_cast<int>(i / 4)][static_cast<int>(i % 4)] = number(source.matrix[i], what + " matrix");
-    node.matrix = m;
+    const glm::vec4 affine(0, 0, 0, 1), last = glm::row(m, 3);
+    if (!glm::all(glm::lessThanEqual(glm::abs(last - affine), glm::vec4(kRounding))))
+      warn(what + " matrix: its last row is not 0, 0, 0, 1, which is taken instead");
+    node.matrix = glm::row(m, 3, affine);
   }
   if (source.translation.size() == 3) {
     for (int c = 0; c < 3; ++c)

@@ -1,5 +1,7 @@
 // Files that are broken and places that cannot be written: one line, the exit status, and nothing left
 // behind.
+#include <sys/stat.h>
+
 #include <limits>
 
 #include "tests/cli/limn_program.h"
@@ -129,6 +131,33 @@ TEST_F(BadOutput, PlacesThatCannotBeWritten) {
   EXPECT_EQ(listing(folder_.path()), (std::vector<std::string>{"file", "folder.exr"}));
 }
 
+TEST_F(BadOutput, DevicesAndPipesStayWhatTheyAre) {
+  const fs::path pipe = folder_ / "pipe";
+  ASSERT_EQ(mkfifo(pipe.c_str(), 0600), 0);
+  expectRefused(limn({"render", kCornellBox, "--size", "8x8", "--out", folder_ / "a.exr", "--stats", pipe}),
+                1, {"pipe", "cannot be written"});
+  EXPECT_TRUE(fs::is_fifo(pipe));
+  EXPECT_EQ(listing(folder_.path()).size(), 1u);
+}
+
+/// What is read would be lost, or one of two results.
+TEST_F(BadOutput, NoFileIsWrittenTwiceOrReadAsWell) {
+  const fs::path picture = folder_ / "a.png", map = folder_ / "map.exr";
+  const auto refused = [](const std::vector<std::string>& arguments, const std::string& name) {
+    expectRefused(limn(arguments), 2, {name, "another argument names the same file"});
+  };
+  ASSERT_EQ(write("render", map).status, 0);
+  const std::string before = contents(map);
+  refused({"render", kCornellBox, "--out", picture, "--stats", folder_ / "./a.png"}, "a.png");
+  EXPECT_FALSE(fs::exists(picture));
+  refused({"render", kCornellBox, "--environment", map, "--out", map}, "map.exr");
+  refused({"reference", kCornellBox, "--environment", map, "--out", map}, "map.exr");
+  refused({"environment", map, "--overlay", map}, "map.exr");
+  ASSERT_EQ(write("render", picture).status, 0);
+  refused({"compare", picture, map, "--diff", picture}, "a.png");
+  EXPECT_EQ(contents(map), before);
+}
+
 TEST_F(BadOutput, FullDisk) {
   for (const char* name : {"a.exr", "a.png"}) {
     expectRefused(write("render", folder_ / name, 100), 1, {name, "cannot be written"});
@@ -142,8 +171,24 @@ TEST_F(BadOutput, FullDisk) {
 
 TEST_F(BadOutput, FullStandardOutput) {
   if (!fs::exists("/dev/full")) GTEST_SKIP() << "no /dev/full";
-  const Outcome outcome = run({"/bin/sh", "-c", "exec " + kLimnBinary + " list > /dev/full"});
-  expectRefused(outcome, 1, {"standard output"});
+  for (const char* arguments : {"list", "completion", "--help", "render --help"}) {
+    SCOPED_TRACE(arguments);
+    const Outcome outcome = run({"/bin/sh", "-c", "exec " + kLimnBinary + " " + arguments + " > /dev/full"});
+    expectRefused(outcome, 1, {"standard output"});
+  }
+}
+
+/// Nor is another file opened in its place.
+TEST_F(BadOutput, ClosedStandardOutput) {
+  const Outcome list = run({"/bin/sh", "-c", "exec " + kLimnBinary + " list >&-"});
+  expectRefused(list, 1, {"standard output"});
+  EXPECT_EQ(list.out, "");
+  const std::string picture = folder_ / "a.png";
+  const Outcome all = run(
+      {"/bin/sh", "-c",
+       "exec " + kLimnBinary + " render " + kCornellBox + " --size 8x8 --out " + picture + " <&- >&- 2>&-"});
+  EXPECT_EQ(all.status, 0);
+  EXPECT_EQ(contents(picture).substr(1, 3), "PNG");
 }
 
 TEST_F(BadOutput, AFileThatMayNotGrowEndsNoProgram) {

@@ -361,6 +361,16 @@ TEST_F(BenchFaults, LittleIsEnoughOrSaidInOneLine) {
   EXPECT_EQ(rows(folder_ / "out").size(), 1u);
 }
 
+/// Whoever starts it may ignore how its children end (SIGCHLD), which a program inherits.
+TEST_F(BenchFaults, AParentThatIgnoresItsChildrenChangesNothing) {
+  suite(shadows());
+  std::vector<std::string> arguments = command();
+  arguments.insert(arguments.begin(), {"/usr/bin/env", "--ignore-signal=CHLD"});
+  const Outcome outcome = run(arguments, environment_);
+  EXPECT_EQ(outcome.status, 0) << outcome.err;
+  EXPECT_EQ(rows(folder_ / "out").size(), 1u);
+}
+
 TEST_F(BenchFaults, NoHomeAndACommaForAPointChangeNothing) {
   suite(shadows());
   ASSERT_EQ(bench().status, 0);

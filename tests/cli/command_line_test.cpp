@@ -37,6 +37,11 @@ TEST(CommandLine, WrongUsageIsOneLine) {
   expectRefused(limn({"render", kCornellBox, "--out", "a.png", "--colour"}), 2, {"--colour"});
 }
 
+TEST(CommandLine, NoSeedStandsForAnother) {
+  for (const char* seed : {"-1", "18446744073709551616", "1.5", "seven"})
+    expectRefused(limn({"reference", kCornellBox, "--out", "a.exr", "--seed", seed}), 2, {"--seed", seed});
+}
+
 /// No comparison holds with NaN, so that a range that asks whether a value lies outside lets it in.
 TEST(CommandLine, NoRealOptionTakesNan) {
   std::vector<std::vector<std::string>> commands{{"brdf", "simulate"}};

@@ -145,6 +145,8 @@ TEST_F(ImportTest, RefusesInOneLine) {
   expectRefused(run({kLimnBinary, "import", file}, {{"PATH", folder_.path()}}), 1,
                 {"assimp", "apt-get install assimp-utils"});
   EXPECT_EQ(listing(folder_.path()), std::vector<std::string>{"a.obj"});
+  const fs::path own = model("b.glb", kObject);
+  expectRefused(limn({"import", own, "--out", own}), 2, {"b.glb", "another argument names the same file"});
 }
 
 }  // namespace

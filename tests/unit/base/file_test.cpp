@@ -4,6 +4,7 @@
 #include <fcntl.h>
 #include <gtest/gtest.h>
 #include <sys/file.h>
+#include <sys/stat.h>
 #include <sys/wait.h>
 #include <unistd.h>
 
@@ -122,6 +123,26 @@ TEST_F(FileTest, ATemporaryFileGetsItsNameOrIsGone) {
   EXPECT_EQ(names(), std::vector<std::string>{"a"});
   EXPECT_EQ(readTextFile(folder_ / "a"), "content of another program");
   EXPECT_THROW(TemporaryFile(folder_ / "missing" / "a"), Error);
+}
+
+/// As root one would otherwise replace /dev/null, and what /dev/stdout leads to.
+TEST_F(FileTest, DevicesPipesAndWhatIsOpenStayWhatTheyAre) {
+  const fs::path fifo = folder_ / "fifo", device = folder_ / "null", opened = folder_ / "stdout";
+  ASSERT_EQ(::mkfifo(fifo.c_str(), 0600), 0);
+  fs::create_symlink("/dev/null", device);
+  std::ofstream(folder_ / "log") << "log";
+  const int log = ::open((folder_ / "log").c_str(), O_WRONLY | O_CLOEXEC);
+  fs::create_symlink("/proc/self/fd/" + std::to_string(log), opened);
+  ASSERT_TRUE(fs::is_regular_file(opened));
+  const std::vector<std::string> before = names();
+  for (const fs::path& path : {fifo, device, opened}) {
+    EXPECT_TRUE(isSpecialFile(path));
+    EXPECT_THROW(writeTextFile(path, "content"), Error) << path;
+  }
+  EXPECT_EQ(names(), before);
+  EXPECT_TRUE(fs::is_fifo(fifo) && fs::is_symlink(device) && fs::is_symlink(opened));
+  ::close(log);
+  for (const char* name : {"log", "missing", "."}) EXPECT_FALSE(isSpecialFile(folder_ / name)) << name;
 }
 
 TEST_F(FileTest, WritersAndCleanersInManyThreadsLoseNothing) {

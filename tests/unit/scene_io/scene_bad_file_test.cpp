@@ -1,4 +1,9 @@
 // Files that are missing, unreadable or outside the scene's folder end in one line that names them.
+#include <sys/resource.h>
+#include <unistd.h>
+
+#include <fstream>
+
 #include "tests/support/png.h"
 #include "tests/support/scene_files.h"
 
@@ -62,6 +67,37 @@ TEST_F(SceneBadFile, BufferOutsideTheFolder) {
   EXPECT_THAT(loadError(write("scene/a.gltf", b.text())),
               AllOf(HasSubstr("buffer 0"), HasSubstr("outside the scene's folder")));
 }
+
+#if !defined(LIMN_SANITIZED)  // whose shadow memory takes terabytes of addresses
+/// A limit of addresses that is in force while it lives, above those that are in use.
+class AddressLimit {
+ public:
+  explicit AddressLimit(rlim_t more) {
+    getrlimit(RLIMIT_AS, &before_);
+    rlim_t pages = 0;
+    std::ifstream("/proc/self/statm") >> pages;
+    const rlimit limit{pages * static_cast<rlim_t>(sysconf(_SC_PAGESIZE)) + more, before_.rlim_max};
+    setrlimit(RLIMIT_AS, &limit);
+  }
+  ~AddressLimit() { setrlimit(RLIMIT_AS, &before_); }
+  AddressLimit(const AddressLimit&) = delete;
+  AddressLimit& operator=(const AddressLimit&) = delete;
+
+ private:
+  rlimit before_{};
+};
+
+/// A document of some kilobytes is no licence to take 32 GiB.
+TEST_F(SceneBadFile, AFileThatManyBuffersNameIsReadOnce) {
+  std::filesystem::resize_file(write("scene/a.bin", {}), std::uintmax_t{64} << 20);
+  GltfBuilder b;
+  for (int i = 0; i < 512; ++i)
+    b.append("buffers", {{"byteLength", 16}, {"uri", i % 2 == 0 ? "a.bin" : "./a%2ebin"}});
+  const std::filesystem::path file = write("scene/a.gltf", b.text());
+  const AddressLimit limit(rlim_t{4} << 30);
+  EXPECT_EQ(loadError(file), "");
+}
+#endif
 
 TEST_F(SceneBadFile, TextureMissing) {
   const scene::Scene loaded = scene::load(write("scene/a.glb", namingTexture("gone.png").glb()));

@@ -406,6 +406,15 @@ TEST(SceneBadInput, MessagesStayOnOneLine) {
   EXPECT_THAT(loadError(b.glb()), HasSubstr("two?lines"));
 }
 
+/// What is read of the document afterwards is to be UTF-8 still.
+TEST(SceneBadInput, LongNamesAreCutBetweenCharacters) {
+  std::string name = "a";
+  while (name.size() < 1000) name += "\xc3\xa9";
+  GltfBuilder b;
+  b.triangle(b.append("materials", {{"name", name}}));
+  EXPECT_EQ(loadBuilt(b).materials[0].name, name.substr(0, 599) + "...");
+}
+
 TEST(SceneBadInput, NamesStayOnOneLine) {
   const std::string name = "two\nlines\x1b[2J";
   GltfBuilder b;

@@ -1,5 +1,7 @@
 // What a loaded scene holds: geometry, materials, textures, extras.
+#include <array>
 #include <cmath>
+#include <glm/gtc/matrix_transform.hpp>
 
 #include "core/image/image.h"
 #include "tests/support/png.h"
@@ -234,6 +236,52 @@ TEST(SceneLoad, TangentsOnlyWithNormalMap) {
   expectNear(onlyPrimitive(scene).tangents[0], {1, 0, 0});
 }
 
+/// Halves of a body that share a texture, mirrored, may share vertices as well, whose tangents would cancel.
+TEST(SceneLoad, MirroredHalvesHaveTangentsOfTheirOwn) {
+  GltfBuilder b;
+  const std::vector<std::byte> image = png(1, 1, {128, 128, 255, 255});
+  b.append("images", {{"bufferView", b.view(image.data(), image.size())}, {"mimeType", "image/png"}});
+  b.append("textures", {{"source", 0}});
+  const int material = b.append("materials", {{"normalTexture", {{"index", 0}}}});
+  const std::vector<glm::vec3> places = {{-1, 0, 0}, {0, 0, 0}, {0, 1, 0}, {1, 0, 0}};
+  const json attributes = {{"POSITION", b.vec3(places)},
+                           {"NORMAL", b.vec3(std::vector<glm::vec3>(4, {0, 0, 1}))},
+                           {"TEXCOORD_0", b.vec2({{1, 1}, {0, 1}, {0, 0}, {1, 1}})},
+                           {"COLOR_0", b.vec3(places)}};
+  b.meshNode(b.mesh(attributes, b.indices({0, 1, 2, 1, 3, 2}), material));
+  b.root["meshes"][0]["primitives"][0]["targets"] = json::array({{{"POSITION", b.vec3(places)}}});
+  const Scene scene = loadBuilt(b);
+  const Primitive& p = onlyPrimitive(scene);
+  ASSERT_EQ(p.tangents.size(), 6u);
+  for (std::size_t i = 0; i < 6; ++i) {
+    const float side = i < 3 ? -1.f : 1.f;
+    EXPECT_EQ(p.tangents[p.indices[i]], glm::vec4(side, 0, 0, side)) << i;
+    const glm::vec3 place = places[std::array<std::size_t, 6>{0, 1, 2, 1, 3, 2}[i]];
+    EXPECT_EQ(p.positions[p.indices[i]], place);
+    EXPECT_EQ(p.colours[p.indices[i]], glm::vec4(place, 1));
+    EXPECT_EQ(p.morphTargets[0].positions[p.indices[i]], place);
+  }
+  b.root["meshes"][0]["primitives"][0]["attributes"]["TANGENT"] =
+      b.vec4(std::vector<glm::vec4>(4, {1, 0, 0, 1}));
+  EXPECT_EQ(onlyPrimitive(loadBuilt(b)).positions.size(), 4u) << "the file's own";
+}
+
+/// Of others one renderer would divide by the fourth coordinate and one would not.
+TEST(SceneLoad, MatricesAreAffine) {
+  GltfBuilder b;
+  b.triangle();
+  json& matrix = b.root["nodes"][0]["matrix"];
+  matrix = {1, 0, 0, 1e-7, 0, 1, 0, 0, 0, 0, 1, 0, 7, 0, 0, 0.9999999};
+  const Scene rounded = loadBuilt(b);
+  EXPECT_TRUE(rounded.warnings.empty()) << rounded.warnings.front();
+  matrix[3] = 0.5;
+  matrix[15] = 2;
+  const Scene other = loadBuilt(b);
+  EXPECT_THAT(other.warnings, ElementsAre(HasSubstr("node 0 'n' matrix: its last row is not 0, 0, 0, 1")));
+  for (const Scene* scene : {&rounded, &other})
+    EXPECT_EQ(scene->nodes.at(0).matrix, glm::translate(glm::mat4(1), glm::vec3(7, 0, 0)));
+}
+
 TEST(SceneLoad, OnlyTheDefaultSceneIsDrawn) {
   GltfBuilder b;
   b.triangle();
@@ -289,6 +337,19 @@ TEST(SceneLoad, SpotsShineThroughTextures) {
   EXPECT_EQ(texels[0], glm::vec3(0, 0, 1)) << "lower left";
   EXPECT_EQ(texels[side - 1], glm::vec3(1));
   EXPECT_EQ(texels[size_t{side} * (side - 1)], glm::vec3(1, 0, 0)) << "upper left";
+}
+
+/// By them a bench tells whether the scene has changed.
+TEST_F(SceneFile, NamesItsFilesHoweverLargeItIs) {
+  GltfBuilder b;
+  b.append("images", {{"uri", "in%20side.png"}});
+  const std::filesystem::path picture = write("scene/in side.png", png(1, 1, {1, 2, 3, 4}));
+  const std::filesystem::path text = write("scene/a.gltf", b.text()), binary = write("scene/b.glb", b.glb());
+  std::filesystem::resize_file(binary, std::uintmax_t{3} << 30);  // takes no room: nothing is written
+  for (const std::filesystem::path& file : {text, binary})
+    EXPECT_THAT(scene::filesOf(file), ElementsAre(file, picture));
+  EXPECT_THROW(scene::filesOf(folder_ / "none.glb"), Error);
+  EXPECT_THAT(scene::filesOf(write("scene/c.glb", GltfBuilder::toBytes("glTF"))), testing::SizeIs(1));
 }
 
 TEST_F(SceneFile, EnvironmentBesideTheScene) {
