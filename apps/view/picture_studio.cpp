@@ -259,7 +259,13 @@ bool PictureStudio::follow(const PictureOrder& order, const std::function<bool()
   const double start = now();
   const auto milliseconds = [&] { return 1000 * (now() - start); };
   const bool smallest = order.moving && reduction_ == kLargestReduction;
-  const auto cancelled = [&] { return !smallest && milliseconds() > kFluentMs && outdated(); };
+  const bool slow = wholeMs_ / (reduction_ * reduction_) > kFluentMs;
+  const auto cancelled = [&] {
+    if (smallest) return false;
+    // A GPU takes the commands of all passes long before it has done the first ones.
+    if (slow) device_.gl().Finish();
+    return milliseconds() > kFluentMs && outdated();
+  };
   if (render(order, cancelled) == Outcome::cancelled) {
     rendered_.reset();
     wholeMs_ = std::max(wholeMs_, kSlower * milliseconds() * reduction_ * reduction_);
