@@ -10,6 +10,7 @@
 #include <string>
 #include <vector>
 
+#include "core/base/error.h"
 #include "core/reference/reference.h"
 #include "core/render/renderer.h"
 #include "core/scene_io/load.h"
@@ -98,6 +99,8 @@ class PictureTest : public GlTest {
   /// Those under test: all, or the one that LIMN_TEST_TECHNIQUE names.
   static std::vector<const TechniquePlugin*> testedTechniques() {
     if (const char* name = std::getenv("LIMN_TEST_TECHNIQUE")) return {&registry().find(name)};
+    // A law holds for none of those that could not be loaded.
+    for (const TechniqueRegistry::Refusal& refusal : registry().refused()) throw Error(refusal.reason);
     return {registry().all().begin(), registry().all().end()};
   }
 
