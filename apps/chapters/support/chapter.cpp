@@ -99,7 +99,7 @@ int runChapter(const Chapter& chapter, int argc, char** argv) {
         ->take_all();
     program.add_option("--scene", scene.scene, "Scene in the window: a file, or the name of one of limn's")
         ->capture_default_str();
-    addSceneFlag(program, scene, "size")->description("Size of the window, WIDTHxHEIGHT");
+    addSceneFlag(program, scene, "size")->description("Size of the picture in the window, WIDTHxHEIGHT");
     program.add_option("--frames", frames, "Close the window after this many frames; 0: keep it open")
         ->check(CLI::NonNegativeNumber);
     backend.addTo(program);
