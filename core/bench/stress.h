@@ -37,8 +37,10 @@ LIMN_API const char* name(StressVerdict verdict);
 struct StressAnswer {
   std::string term;  ///< as StressRun::terms() names it
   StressVerdict verdict = StressVerdict::pass;
-  double error = 0;          ///< RMSE of V; of radiance, relative to the reference's mean
-  double benign = 0;         ///< of the unchanged scene with default parameters
+  double error = 0;  ///< RMSE of V; of radiance, relative to the reference's mean
+  /// Of the unchanged scene with default parameters, or with the case's own where it is a technique's form of
+  /// a common one.
+  double benign = 0;
   double factor = 0;         ///< error / max(benign, 0.01); degraded above what the case allows
   std::string message = {};  ///< why it was refused or has failed
 };

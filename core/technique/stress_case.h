@@ -41,7 +41,8 @@ struct StressCase {
   /// besides: airlight, where caustic lines are a part of what a medium scatters. Empty: none.
   const char* beside = "";
   /// Limits the error in each term that the technique answers, as a multiple of that of the unchanged scene
-  /// with default parameters (or of 0.01, if that is more); beyond it the case counts as degraded. 0: the
+  /// with default parameters, or with `settings` where the case has the name of one that all techniques meet
+  /// and stands in its place (or of 0.01, if that is more); beyond it the case counts as degraded. 0: the
   /// picture differs too much from that scene's for the error to be meaningful; only its values are checked.
   double factor = 1.5;
 };

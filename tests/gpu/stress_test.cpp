@@ -157,6 +157,19 @@ TEST_F(StressTest, VerdictsFollowWhatHappened) {
   EXPECT_THAT(bench::toMarkdown(results), testing::HasSubstr("refused: "));
 }
 
+/// Settings of a technique's own form of a common case are not what the case is about.
+TEST_F(StressTest, AFormOfACommonCaseHasItsSettingsInTheUnchangedSceneAsWell) {
+  bench::StressRun run = stressRun();
+  const TechniquePlugin& pcss = registry().find("pcss");
+  const auto factorOf = [&](const char* name) {
+    return run.run(pcss, {.name = name, .settings = "blocker_samples=1 filter_samples=1"}, true)
+        .worst()
+        .factor;
+  };
+  EXPECT_GT(factorOf("one sample"), 1.5);
+  EXPECT_EQ(factorOf("foliage"), 1);
+}
+
 // A technique that answers several terms is asked for each: a setting that V does not know of shows in the
 // others. Reflected light grows with the bounces, of the picture as of its reference.
 TEST_F(StressTest, EveryTermIsAskedForAndTheWorstCounts) {
