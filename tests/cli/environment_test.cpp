@@ -39,6 +39,8 @@ TEST_F(EnvironmentCommand, WritesTheOverlayAndRefusesWhatMakesNoSense) {
   const std::filesystem::path overlay = folder_ / "lights.png";
   ASSERT_EQ(limn({"environment", map(), "--overlay", overlay.string(), "--width", "64"}).status, 0);
   EXPECT_GT(std::filesystem::file_size(overlay), 100u);
+  for (const char* ofOverlays : {"--width", "--exposure"})
+    expectRefused(limn({"environment", map(), ofOverlays, "16"}), 2, {ofOverlays, "--overlay"});
   expectRefused(limn({"environment", map(), "--lights", "2"}), 2, {"--lights", "2"});
   expectRefused(limn({"environment", map(), "--shape", "discs"}), 2, {"discs", "squares", "rectangles"});
   expectRefused(limn({"environment", map(), "--overlay", "lights.jpg"}), 2, {"lights.jpg", ".png"});
