@@ -9,14 +9,12 @@
 namespace limn::assets::atrium {
 namespace {
 
-constexpr float kPi = glm::pi<float>();
-
 /// An acanthus-like leaf that hugs a bell and curls outwards at its tip; root at the origin, outwards is +Z.
 Mesh capitalLeaf(float width, float height) {
   return surface(6, 9, [=](glm::vec2 uv) {
     const float t = uv.y, x = 2 * uv.x - 1;
-    const float half = 0.5f * width * (0.75f + 0.5f * std::sin(kPi * t)) * (1 - 0.75f * t * t * t) *
-                       (1 + 0.1f * std::cos(14 * t));
+    const float half = 0.5f * width * (0.75f + 0.5f * std::sin(glm::pi<float>() * t)) *
+                       (1 - 0.75f * t * t * t) * (1 + 0.1f * std::cos(14 * t));
     const float curl = 0.22f * height * t * t * t + 0.05f * height * t;
     const float y = height * (t - 0.22f * t * t * t * t);
     return glm::vec3(x * half, y, curl + 0.1f * width * (1 - x * x) + 0.02f * width * std::cos(9 * x));
@@ -50,7 +48,7 @@ void addBase(Mesh& mesh, float radius) {
   std::vector<glm::vec2> profile;
   const auto roll = [&](float y, float r, float half) {
     for (int i = 0; i <= 6; ++i) {
-      const float a = kPi * (static_cast<float>(i) / 6 - 0.5f);
+      const float a = glm::pi<float>() * (static_cast<float>(i) / 6 - 0.5f);
       profile.emplace_back(r + half * std::cos(a), y + half * std::sin(a));
     }
   };
@@ -69,8 +67,8 @@ Mesh flutedColumn(float height, float radius) {
   addBase(mesh, radius);
   const float capital = 1.7f * radius, bottom = 0.28f, top = height - capital;
   append(mesh, surface(120, 8, [=](glm::vec2 uv) {
-           const float a = 2 * kPi * uv.x, t = uv.y;
-           const float taper = 1 - 0.14f * t * t + 0.02f * std::sin(kPi * t);
+           const float a = 2 * glm::pi<float>() * uv.x, t = uv.y;
+           const float taper = 1 - 0.14f * t * t + 0.02f * std::sin(glm::pi<float>() * t);
            const float flute =
                std::pow(0.5f - 0.5f * std::cos(20 * a), 0.7f) * (t < 0.01f || t > 0.99f ? 0.0f : 1.0f);
            const float r = radius * taper * (1 - 0.085f * flute);
@@ -98,8 +96,8 @@ Mesh plainColumn(float height, float radius) {
 Mesh archedWall(float width, float height, float depth, float radius) {
   constexpr int steps = 28;
   const float half = width / 2, corner = std::atan2(height, half);
-  std::vector<float> angles = {corner, kPi - corner};
-  for (int i = 0; i <= steps; ++i) angles.push_back(kPi * static_cast<float>(i) / steps);
+  std::vector<float> angles = {corner, glm::pi<float>() - corner};
+  for (int i = 0; i <= steps; ++i) angles.push_back(glm::pi<float>() * static_cast<float>(i) / steps);
   std::sort(angles.begin(), angles.end());
   const auto rim = [&](float a) {  // where the ray at angle a leaves the rectangle
     const float c = std::abs(std::cos(a)), s = std::sin(a);
@@ -135,7 +133,7 @@ Mesh archedWall(float width, float height, float depth, float radius) {
     for (const auto& [at, thick] : {std::pair{radius + 0.03f, 0.035f}, {radius + 0.13f, 0.022f}}) {
       std::vector<glm::vec3> path;
       for (int i = 0; i <= steps; ++i) {
-        const float a = kPi * static_cast<float>(i) / steps;
+        const float a = glm::pi<float>() * static_cast<float>(i) / steps;
         path.emplace_back(at * std::cos(a), at * std::sin(a), face * z);
       }
       append(mesh, tube(path, std::vector<float>(path.size(), thick), 8, false));
@@ -212,7 +210,7 @@ Mesh banner(float width, float drop) {
     const float x = (uv.x - 0.5f) * width * (1 - 0.05f * down);
     const float hem = 0.12f * drop * (uv.x < 0.5f ? uv.x : 1 - uv.x) * 2;
     return glm::vec3(x, -down * (drop - 0.12f * drop + hem),
-                     fold * std::sin(2 * kPi * 2.5f * uv.x + 0.8f * std::sin(4 * down)) +
+                     fold * std::sin(2 * glm::pi<float>() * 2.5f * uv.x + 0.8f * std::sin(4 * down)) +
                          0.02f * std::sin(9 * uv.x + 6 * down));
   });
 }

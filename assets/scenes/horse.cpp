@@ -51,7 +51,7 @@ float neck(glm::vec3 p) {
   return smoothUnion(upper.at(p, 1.5f), throat.at(p, 1.35f), 0.12f);
 }
 
-float head(glm::vec3 p) {
+float horseHead(glm::vec3 p) {
   const glm::vec3 q = mirrored(p);
   static const Limb skull{{1.02f, 2.02f, 0, 0.12f},
                           {1.16f, 1.9f, 0, 0.115f},
@@ -146,7 +146,7 @@ float body(glm::vec3 p) {
   static const Hindleg left{0.14f, 0.16f}, right{-0.1f, -0.16f};
   float d = trunk(p);
   d = smoothUnion(d, neck(p), 0.16f);
-  d = smoothUnion(d, head(p), 0.06f);
+  d = smoothUnion(d, horseHead(p), 0.06f);
   d = smoothUnion(d, foreleg(p), 0.08f);
   d = smoothUnion(d, liftedForeleg(p), 0.08f);
   d = smoothUnion(d, left.distance(p), 0.1f);

@@ -13,14 +13,15 @@
 namespace limn::assets {
 namespace {
 
-struct Ball {
+struct PlacedBall {
   glm::vec2 at;  ///< x and z
   float radius;
 };
 
-constexpr Ball kBalls[] = {{{-1.05f, -0.95f}, 0.4f}, {{0.02f, -1.1f}, 0.3f},    {{1.0f, -0.8f}, 0.46f},
-                           {{-1.15f, 0.08f}, 0.28f}, {{-0.12f, -0.05f}, 0.44f}, {{0.9f, 0.22f}, 0.26f},
-                           {{-0.75f, 0.92f}, 0.34f}, {{0.2f, 0.85f}, 0.24f},    {{1.02f, 1.05f}, 0.36f}};
+constexpr PlacedBall kBalls[] = {
+    {{-1.05f, -0.95f}, 0.4f}, {{0.02f, -1.1f}, 0.3f},    {{1.0f, -0.8f}, 0.46f},
+    {{-1.15f, 0.08f}, 0.28f}, {{-0.12f, -0.05f}, 0.44f}, {{0.9f, 0.22f}, 0.26f},
+    {{-0.75f, 0.92f}, 0.34f}, {{0.2f, 0.85f}, 0.24f},    {{1.02f, 1.05f}, 0.36f}};
 
 /// What everything is made of.
 enum class Look { diffuse, bumps, glossy, metal };
@@ -67,7 +68,7 @@ void addSpheres(Scene& scene, Look look) {
   Mesh stage = ground(3, 4, tile);
   std::array<Mesh, skins.size()> bySkin;
   for (std::size_t i = 0; i < std::size(kBalls); ++i) {
-    const Ball& ball = kBalls[i];
+    const PlacedBall& ball = kBalls[i];
     Mesh mesh = sphere(ball.radius, 48);
     const float around = std::round(6.28f * ball.radius / bump);
     scaleUv(mesh, {around, 0.5f * around});

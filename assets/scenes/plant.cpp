@@ -10,7 +10,6 @@
 namespace limn::assets {
 namespace {
 
-constexpr float kPi = glm::pi<float>();
 constexpr float kGoldenAngle = 2.39996323f;
 
 /// A leaf of length 1 along +Y, its upper side towards +Z: folded along the midrib, drooping, wavy at the
@@ -19,7 +18,8 @@ Mesh leafShape(float droop, float fold, float wave) {
   return surface(4, 8, [=](glm::vec2 uv) {
     const float t = uv.y, across = 2 * uv.x - 1;
     const float width =
-        0.27f * std::pow(std::max(std::sin(kPi * std::pow(t, 0.75f)), 0.0f), 0.85f) + 0.004f * (1 - t);
+        0.27f * std::pow(std::max(std::sin(glm::pi<float>() * std::pow(t, 0.75f)), 0.0f), 0.85f) +
+        0.004f * (1 - t);
     const float bend = droop * t * t;
     const float lift = width * (fold * std::abs(across) + wave * across * across * std::sin(9 * t + across));
     const glm::vec3 rib(0, std::sin(bend) / std::max(droop * t, 1e-3f),
@@ -67,7 +67,7 @@ class Fig {
     std::vector<glm::vec3> path = {start};
     std::vector<float> radii = {radius};
     direction = glm::normalize(direction);
-    const float phase = random_.uniform(0, 2 * kPi);
+    const float phase = random_.uniform(0, 2 * glm::pi<float>());
     for (int i = 1; i <= steps; ++i) {
       const float t = static_cast<float>(i) / steps;
       const glm::vec3 wander(random_.uniform(-1, 1), random_.uniform(-0.3f, 0.6f), random_.uniform(-1, 1));
@@ -80,7 +80,7 @@ class Fig {
         fork(path.back(), direction, turn, length * (1.05f - 0.5f * t), radii.back(), level);
       if (level > 0 || i >= 6) {
         for (int k = 0; k < (level == 0 ? 1 : 2); ++k)
-          leaf(path.back(), direction, turn + 1.2f + kPi * static_cast<float>(k));
+          leaf(path.back(), direction, turn + 1.2f + glm::pi<float>() * static_cast<float>(k));
       }
     }
     leaf(path.back(), direction, phase);
@@ -141,7 +141,7 @@ void addPot(Scene& scene) {
   Random random(9);
   Mesh soil = transformed(sphere(0.235f, 20), translation({0, 0.345f, 0}) * scaling({1, 0.12f, 1}));
   for (int i = 0; i < 160; ++i) {
-    const float r = 0.22f * std::sqrt(random.uniform()), a = random.uniform(0, 2 * kPi),
+    const float r = 0.22f * std::sqrt(random.uniform()), a = random.uniform(0, 2 * glm::pi<float>()),
                 size = random.uniform(0.006f, 0.016f);
     append(soil, sphere(1, 5),
            translation({r * std::cos(a), 0.37f - 0.25f * r * r, r * std::sin(a)}) *

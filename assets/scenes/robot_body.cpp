@@ -10,7 +10,6 @@
 namespace limn::assets::robot {
 namespace {
 
-constexpr float kPi = glm::pi<float>();
 using Profile = std::vector<glm::vec2>;
 
 float signedPower(float x, float e) {
@@ -21,7 +20,7 @@ float signedPower(float x, float e) {
 Mesh superellipsoid(glm::vec3 radii, float squareVertical, float squareHorizontal, float taper = 0,
                     int rings = 28) {
   return surface(2 * rings, rings, [=](glm::vec2 uv) {
-    const float a = 2 * kPi * uv.x, b = kPi * (uv.y - 0.5f);
+    const float a = 2 * glm::pi<float>() * uv.x, b = glm::pi<float>() * (uv.y - 0.5f);
     const float c = std::pow(std::max(std::cos(b), 0.0f), squareVertical),
                 y = signedPower(std::sin(b), squareVertical);
     const float wide = 1 + taper * y;
@@ -36,7 +35,7 @@ Mesh sleeve(float bottom, float top, float length, int ribs, float depth) {
   const int steps = ribs * 6;
   for (int i = 0; i <= steps; ++i) {
     const float t = static_cast<float>(i) / static_cast<float>(steps);
-    const float rib = 0.5f - 0.5f * std::cos(2 * kPi * t * static_cast<float>(ribs));
+    const float rib = 0.5f - 0.5f * std::cos(2 * glm::pi<float>() * t * static_cast<float>(ribs));
     profile.emplace_back(glm::mix(bottom, top, t) + depth * (rib - 0.5f), t * length);
   }
   profile.emplace_back(0, length);

@@ -11,7 +11,6 @@
 namespace limn::assets::soldier {
 namespace {
 
-constexpr float kPi = glm::pi<float>();
 const glm::vec3 kGrip(-0.37f, 1.2f, 0.27f);  ///< the hand at the spear
 const glm::vec3 kShield(0.2f, 1.1f, 0.33f);
 
@@ -118,7 +117,7 @@ Mesh crest() {
                     back = glm::normalize(glm::cross(glm::vec3(-1, 0, 0), out));
     for (int k = 0; k < 4; ++k) {
       const float side = (static_cast<float>(k) - 1.5f) / 1.5f,
-                  length = (0.11f + 0.03f * std::sin(kPi * t)) * random.uniform(0.9f, 1.05f);
+                  length = (0.11f + 0.03f * std::sin(glm::pi<float>() * t)) * random.uniform(0.9f, 1.05f);
       std::vector<glm::vec3> path;
       std::vector<float> radii;
       for (int j = 0; j <= 3; ++j) {

@@ -28,15 +28,15 @@ constexpr Revolution kRevolutions[] = {
     {{{1.5f, 0.15f}, {1.5f, 0.075f}, {1.425f, 0}, {0, 0}}, 0.56f},                    // bottom
 };
 
-/// Rows across a limb: the nearer and the farther point of its plane of symmetry as (x, height), and half its
-/// width.
-struct Limb {
+/// Rows across a tube (handle or spout): the nearer and the farther point of its plane of symmetry as (x,
+/// height), and half its width.
+struct Tube {
   struct Row {
     glm::vec2 first, second;
     float halfWidth;
   } rows[4];
 };
-constexpr Limb kLimbs[] = {
+constexpr Tube kTubes[] = {
     {{{{-1.6f, 2.025f}, {-1.5f, 2.25f}, 0.3f},  // handle, upper
       {{-2.3f, 2.025f}, {-2.5f, 2.25f}, 0.3f},
       {{-2.7f, 2.025f}, {-3, 2.25f}, 0.3f},
@@ -69,10 +69,10 @@ Patch quarter(const Revolution& shape, int turn) {
   return patch;
 }
 
-Patch half(const Limb& limb, float side) {
+Patch half(const Tube& tube, float side) {
   Patch patch;
   for (int j = 0; j < 4; ++j) {
-    const Limb::Row& row = limb.rows[j];
+    const Tube::Row& row = tube.rows[j];
     const glm::vec2 across[] = {row.first, row.first, row.second, row.second};
     for (int i = 0; i < 4; ++i) {
       patch[j][i] = {across[i].x, across[i].y, i == 1 || i == 2 ? side * row.halfWidth : 0};
@@ -101,9 +101,9 @@ Mesh teapot(int divisions) {
   for (const Revolution& shape : kRevolutions) {
     for (int turn = 0; turn < 4; ++turn) add(quarter(shape, turn), true);
   }
-  for (const Limb& limb : kLimbs) {
-    add(half(limb, -1), true);
-    add(half(limb, 1), false);
+  for (const Tube& tube : kTubes) {
+    add(half(tube, -1), true);
+    add(half(tube, 1), false);
   }
   return mesh;
 }
