@@ -18,6 +18,10 @@ std::string readTextFile(const std::filesystem::path& path, std::uint64_t) {
   throw Error(fmt::format("{}: no such file", path.string()));
 }
 
+std::string readBeginning(const std::filesystem::path& path, std::uint64_t) {
+  throw Error(fmt::format("{}: no such file", path.string()));
+}
+
 void writeFile(const std::filesystem::path& path, std::span<const std::byte>) {
   throw Error(fmt::format("{}: no such folder", path.string()));
 }
