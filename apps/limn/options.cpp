@@ -33,9 +33,10 @@ static_assert(std::atomic<int>::is_always_lock_free, "a signal handler reads it"
 /// Where a standard file is closed, the next file that is opened would take its number, and what is printed
 /// would be written to it. Results are an error then, as before; messages are lost.
 void holdStandardFiles() {
-  for (int file = STDIN_FILENO; file <= STDERR_FILENO; ++file)
-    if (fcntl(file, F_GETFD) < 0) [[maybe_unused]]
-      const int held = open("/dev/null", file == STDERR_FILENO ? O_WRONLY : O_RDONLY);
+  for (int file = STDIN_FILENO; file <= STDERR_FILENO; ++file) {
+    if (fcntl(file, F_GETFD) >= 0) continue;
+    [[maybe_unused]] const int held = open("/dev/null", file == STDERR_FILENO ? O_WRONLY : O_RDONLY);
+  }
 }
 
 }  // namespace
