@@ -20,9 +20,5 @@ struct DiffusionBody {
 
 LIMN_CONST uint no_body = 0xffffffffu;
 
-// Where light gets less far than so many pixels, all pixels draw the same points: a blur over a pattern of points would take away
-// more than it is worth, and without it the pattern shows.
-LIMN_CONST float least_patterned_reach = 1.0f;
-
 LIMN_END
 #endif  // DIFFUSION_BODY_GLSL

@@ -4,7 +4,7 @@
 // least_patterned_reach, all draw the points of the first place. A dispatch answers for all bodies with the program's TEXTURED.
 //
 // What it stores still lacks a factor that varies with the pixel's own colour (exit.comp.glsl): without textures C, with them
-// its root.
+// its root. In alpha it says how much of the pattern is averaged (pattern_weights.glsl).
 //
 // SAMPLES: points of each pixel. DISC_POINTS: how many of them, the last ones, are drawn from the disc. NORMALISE:
 // entry_normalise_*. PLANES 2: half of the points lie in the plane that faces the camera. ROOT 1: at a border of two colours the
@@ -14,6 +14,7 @@
 #include "glsl/diffusion/eye_plane.glsl"
 #include "glsl/numeric/geometry.glsl"
 #include "techniques/subsurface_scattering/entry_texel.glsl"
+#include "techniques/subsurface_scattering/pattern_weights.glsl"
 #include "techniques/subsurface_scattering/pixel_body.glsl"
 
 layout(local_size_x = 8, local_size_y = 8) in;
@@ -126,8 +127,9 @@ void main() {
   vec3 absorption = pixel_absorption(body, boundary, pixel);
   vec3 own_plane = uintBitsToFloat(own.xyz);
   float depth = 1.0 / dot(own_plane, pixel_ray(pixel));
-  float reach = farthest_reach(body, boundary, absorption) * pixels_of_unit(body, depth);
-  uint sub_buffer = reach < least_patterned_reach ? 0u : uint(z);
+  vec3 reach = diffusion_reach(body.extinction, absorption, walk_reflectance(boundary));  // units
+  vec3 pixels = reach * pixels_of_unit(body, depth);
+  uint sub_buffer = max(pixels.x, max(pixels.y, pixels.z)) < least_patterned_reach ? 0u : uint(z);
   bool asked = own.w != no_instance && body_index != no_body && (body.textured != 0u) == (TEXTURED != 0);
   if (asked) {
     Colours colours = matter_colours(body.extinction, absorption, boundary);
@@ -135,8 +137,7 @@ void main() {
     from.colours = colours;
     from.source = PointSource(body.channels, body.uniform_share, body.uniform_radius);
 #if TEXTURED
-    from.source.channels =
-        diffusion_drawn_channels(diffusion_reach(body.extinction, absorption, walk_reflectance(boundary)));
+    from.source.channels = diffusion_drawn_channels(reach);
 #endif
 #if WIDEST
     from.widest = matter_colours(body.extinction, body.absorption, boundary);
@@ -221,6 +222,6 @@ void main() {
 #endif
     mean += hidden;
 #endif
-    imageStore(gathered, pixel, vec4(mean, 0.0));
+    imageStore(gathered, pixel, vec4(mean, pattern_spread_pack(pattern_spread(pixels, block))));
   }
 }

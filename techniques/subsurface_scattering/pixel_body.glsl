@@ -29,14 +29,4 @@ vec3 pixel_absorption(DiffusionBody body, DiffusionBoundary boundary, ivec2 pixe
 // Pixels at that depth in one unit of the body's length.
 float pixels_of_unit(DiffusionBody body, float depth) { return body.unit / (depth * length(frame.view_ray_dx.xyz)); }
 
-// How far the light of the channel that gets farthest gets in the mean, in units.
-float farthest_reach(DiffusionBody body, DiffusionBoundary boundary, vec3 absorption) {
-#if TEXTURED
-  vec3 reach = diffusion_reach(body.extinction, absorption, walk_reflectance(boundary));
-  return max(reach.x, max(reach.y, reach.z));
-#else
-  return 1.0;
-#endif
-}
-
 #endif  // PIXEL_BODY_GLSL

@@ -186,34 +186,32 @@ class Passes {
     return gathered;
   }
 
-  /// Returns the mean over the pattern of interleaved pixels along rows or columns.
-  TextureHandle addBlur(const char* name, TextureHandle gathered, bool vertical) {
-    frame::PassBuilder pass = graph_.addPass(name, SubsurfaceScattering::info.name);
+  /// Returns the mean over the pattern of interleaved pixels along rows.
+  TextureHandle addBlur(TextureHandle gathered) {
+    frame::PassBuilder pass = graph_.addPass("blur along rows", SubsurfaceScattering::info.name);
     pass.read(inputs_.handles.frame, Access::uniformBuffer, "FrameBlock", "camera")
         .read(planes_, Access::sampled, "planes", "which surfaces are alike")
         .read(gathered, Access::sampled, "gathered", "what is averaged");
-    const TextureHandle blurred =
-        pass.write(screen(name, GL_RGBA32F), Access::imageStore, "blurred", "means over like neighbours");
-    run(pass, {.files = {shader("blur")}, .defines = {{"VERTICAL", vertical ? "1" : "0"}}},
+    const TextureHandle blurred = pass.write(screen("means along rows", GL_RGBA32F), Access::imageStore,
+                                             "blurred", "means over like neighbours");
+    run(pass, {.files = {shader("blur")}, .defines = {}},
         [block = block()](gpu::Program& program) { program.set("block", block); });
     return blurred;
   }
 
-  /// Adds the light that leaves to `target`. `blurred` is empty where there is no pattern.
-  TextureHandle addExit(TextureHandle gathered, TextureHandle blurred, TextureHandle target) {
-    const bool textured = anyTextured();
-    frame::PassBuilder pass = graph_.addPass("exit", SubsurfaceScattering::info.name);
-    gpu::ProgramDesc program{.files = {shader("exit")}, .defines = readBodies(pass, textured)};
+  /// Adds the light that leaves to `target`. `gathered`: the means along rows if `blurred`.
+  TextureHandle addExit(TextureHandle gathered, bool blurred, TextureHandle target) {
+    frame::PassBuilder pass =
+        graph_.addPass(blurred ? "blur along columns, exit" : "exit", SubsurfaceScattering::info.name);
+    gpu::ProgramDesc program{.files = {shader("exit")}, .defines = readBodies(pass, anyTextured())};
     program.defines["BLUR"] = blurred ? "1" : "0";
     pass.read(inputs_.gbuffer.normal, Access::sampled, kGBufferNames.normal, "cosines towards the camera")
         .read(gathered, Access::sampled, "gathered", "light that enters around pixels");
-    if (blurred) {
-      pass.read(blurred, Access::sampled, "blurred", "its mean over the pattern")
-          .read(inputs_.gbuffer.depth, Access::sampled, kGBufferNames.depth, "how far light gets in pixels");
-    }
     const TextureHandle result =
         pass.write(target, Access::imageLoadStore, "radiance", "light that left bodies");
-    run(pass, std::move(program), [](gpu::Program&) {});
+    run(pass, std::move(program), [blurred, block = block()](gpu::Program& bound) {
+      if (blurred) bound.set("block", block);
+    });
     return result;
   }
 
@@ -366,13 +364,12 @@ TextureHandle SubsurfaceScattering::addPasses(frame::FrameGraph& graph, const Te
                  .points = graph.importBuffer("points of bodies", buffers_->points),
                  .draws = graph.importBuffer("draws of points", buffers_->draws)},
                 request.lights);
-  const TextureHandle gathered = passes.addGather();
-  TextureHandle blurred;
-  if (inputs.parameters.integer("block") > 1) {
-    blurred = passes.addBlur("blur", passes.addBlur("blur along rows", gathered, false), true);
-  } else {
-    graph.leaveOut("blur", info.name, "all pixels draw the same points");
-  }
+  TextureHandle gathered = passes.addGather();
+  const bool blurred = inputs.parameters.integer("block") > 1;
+  if (blurred)
+    gathered = passes.addBlur(gathered);
+  else
+    graph.leaveOut("blur along rows", info.name, "all pixels draw the same points");
   return passes.addExit(gathered, blurred, request.target);
 }
 

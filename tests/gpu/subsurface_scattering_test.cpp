@@ -177,12 +177,12 @@ TEST_F(SubsurfaceScatteringTest, EdgesOfShadowsSpreadAsLineIntegralsSay) {
     EXPECT_LT(usual, 0.06) << kProfileNames[profile];
     EXPECT_LE(error({{"block", "1"}, {"samples", "64"}}), 0.05) << kProfileNames[profile];
     EXPECT_LE(error({{"samples", "64"}}), 0.05) << kProfileNames[profile];
-    EXPECT_GT(error({{"block", "1"}}), 2 * usual) << kProfileNames[profile];
+    EXPECT_GT(error({{"block", "1"}}), 3 * usual) << kProfileNames[profile];
   }
 }
 
 // Pixels lie on one side of the line, so that all that errs are the points: of 256 by up to 0.016, and the
-// means over the pattern, which mix columns up to 3 pixels away, by 0.0094 (RMS). At the line the other
+// means over the pattern, which mix columns up to 2 pixels away, by 0.009 (RMS). At the line the other
 // colour adds 0.2 or takes as much.
 TEST_F(SubsurfaceScatteringTest, ColoursMixByTheRootOfBothOrStayTheirOwn) {
   const scene::Scene scene = twoColours();

@@ -1,0 +1,65 @@
+// One direction of the mean over the pattern of interleaved pixels (pattern_weights.glsl): of pixels of the same instance that lie
+// near the pixel's tangent plane and face the same way. Where one of two pixels as far away does not count, the other does for
+// both.
+#ifndef PATTERN_MEAN_GLSL
+#define PATTERN_MEAN_GLSL
+#include "glsl/surface/gbuffer_input.glsl"
+#include "techniques/subsurface_scattering/pattern_weights.glsl"
+
+uniform usampler2D planes;
+uniform sampler2D gathered;  // light, and in alpha how much is averaged
+uniform int block;           // pixels
+
+const float least_cosine = 0.8;  // of two normals
+const float most_slope = 0.6;    // of the way from one to the other against the plane
+
+struct Centre {
+  uint instance;
+  vec3 plane;
+  vec3 place;
+  float squared;  // of the plane
+};
+
+// Without roots and divisions: the place is the ray over q, and everything is compared times q and squared.
+bool counts(Centre c, ivec2 pixel) {
+  if (any(lessThan(pixel, ivec2(0))) || any(greaterThanEqual(pixel, ivec2(frame.frame_size)))) return false;
+  uvec4 texel = texelFetch(planes, pixel, 0);
+  vec3 plane = uintBitsToFloat(texel.xyz);
+  vec3 ray = pixel_ray(pixel);
+  float q = dot(plane, ray);
+  vec3 way = ray - q * c.place;
+  float rise = dot(c.plane, ray) - q;
+  float facing = dot(plane, c.plane);
+  return texel.w == c.instance && facing > 0.0 &&
+         facing * facing >= least_cosine * least_cosine * dot(plane, plane) * c.squared &&
+         rise * rise <= most_slope * most_slope * dot(way, way) * c.squared;
+}
+
+// The light of a pixel whose texel of `planes` is `own`, with what it holds in alpha.
+vec4 pattern_mean(ivec2 pixel, uvec4 own, ivec2 axis) {
+  vec4 gathered_here = texelFetch(gathered, pixel, 0);
+  vec3 spread = pattern_spread_unpack(gathered_here.a);
+  int reach = pattern_reach(spread, block);
+  if (reach == 0) return gathered_here;
+  Centre centre;
+  centre.instance = own.w;
+  centre.plane = uintBitsToFloat(own.xyz);
+  centre.place = pixel_ray(pixel) / dot(centre.plane, pixel_ray(pixel));
+  centre.squared = dot(centre.plane, centre.plane);
+  vec3 weights = pattern_weights(spread, block, 0);
+  vec3 sum = weights * gathered_here.rgb;
+  for (int t = 1; t <= reach; ++t) {
+    bool after = counts(centre, pixel + t * axis);
+    bool before = counts(centre, pixel - t * axis);
+    if (!after && !before) continue;
+    vec3 weight = pattern_weights(spread, block, t);
+    vec3 pair = vec3(0.0);
+    if (after) pair += texelFetch(gathered, pixel + t * axis, 0).rgb;
+    if (before) pair += texelFetch(gathered, pixel - t * axis, 0).rgb;
+    sum += weight * (after && before ? pair : 2.0 * pair);
+    weights += 2.0 * weight;
+  }
+  return vec4(sum / weights, gathered_here.a);
+}
+
+#endif  // PATTERN_MEAN_GLSL
