@@ -43,6 +43,16 @@ std::optional<double> parseNumber(std::string_view text) {
   return value;
 }
 
+template <class Integer>
+std::optional<Integer> parseWhole(std::string_view text) {
+  Integer value = 0;
+  const auto [end, error] = std::from_chars(text.data(), text.data() + text.size(), value);
+  if (error != std::errc() || end != text.data() + text.size()) return std::nullopt;
+  return value;
+}
+template std::optional<int> parseWhole(std::string_view text);
+template std::optional<std::size_t> parseWhole(std::string_view text);
+
 std::string oneLine(std::string_view text, size_t limit) {
   text = text.substr(0, text.find_last_not_of(" \t\r\n") + 1);  // npos + 1 is 0
   const std::string_view shown = text.substr(0, wholeCharacters(text, limit));

@@ -1,6 +1,7 @@
 // Declares small helpers for messages and for numbers in untrusted text.
 #pragma once
 
+#include <cstddef>
 #include <optional>
 #include <span>
 #include <string>
@@ -13,6 +14,13 @@ namespace limn {
 
 /// Returns the whole of `text` as a finite number, or nothing if it is not one.
 LIMN_API std::optional<double> parseNumber(std::string_view text);
+
+/// Returns the whole of `text` as a whole number in decimal, or nothing if it is not one or `Integer` does
+/// not hold it. A sign other than the minus of a negative number, and white space, are not accepted.
+template <class Integer>
+LIMN_API std::optional<Integer> parseWhole(std::string_view text);
+extern template std::optional<int> parseWhole(std::string_view text);
+extern template std::optional<std::size_t> parseWhole(std::string_view text);
 
 /// Returns `text` as messages show it: one line without trailing white space, line ends and other control
 /// characters as '?', and at most `limit` bytes of the text, no part of a character of UTF-8 among them.

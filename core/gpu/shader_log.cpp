@@ -1,9 +1,9 @@
 // Messages of GLSL compilers back to limn's files; see glsl_preprocessor.h.
 #include <fmt/format.h>
 
-#include <charconv>
 #include <regex>
 
+#include "core/base/text.h"
 #include "core/gpu/private/glsl_preprocessor.h"
 
 namespace limn::gpu {
@@ -13,13 +13,6 @@ struct Format {
   std::regex expression;
   int file, line, severity, message;  // group numbers
 };
-
-std::optional<size_t> number(const std::string& text) {
-  size_t value = 0;
-  const auto [end, error] = std::from_chars(text.data(), text.data() + text.size(), value);
-  if (error != std::errc() || end != text.data() + text.size()) return std::nullopt;
-  return value;
-}
 
 }  // namespace
 
@@ -41,7 +34,8 @@ std::vector<ShaderDiagnostic> parseShaderLog(std::string_view log, std::span<con
     for (const Format& format : formats) {
       std::smatch match;
       if (!std::regex_match(line, match, format.expression)) continue;
-      const auto file = number(match[format.file]), row = number(match[format.line]);
+      const auto file = parseWhole<size_t>(match[format.file].str()),
+                 row = parseWhole<size_t>(match[format.line].str());
       if (!file || !row || *file >= files.size()) break;
       const std::string severity = match[format.severity];
       diagnostics.push_back({files[*file], static_cast<int>(*row),

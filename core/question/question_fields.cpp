@@ -6,7 +6,6 @@
 #include <algorithm>
 #include <array>
 #include <bit>
-#include <charconv>
 #include <filesystem>
 #include <map>
 #include <stdexcept>
@@ -322,12 +321,8 @@ std::optional<std::pair<int, int>> parsePictureSize(std::string_view text) {
   static const ParameterRange range = questionField("size").range;
   const std::size_t x = text.find('x');
   const auto side = [](std::string_view digits) -> std::optional<int> {
-    int value = 0;
-    const auto [end, error] = std::from_chars(digits.data(), digits.data() + digits.size(), value);
-    if (error != std::errc{} || end != digits.data() + digits.size() || value < range.low ||
-        value > range.high)
-      return std::nullopt;
-    return value;
+    const std::optional<int> value = parseWhole<int>(digits);
+    return value && *value >= range.low && *value <= range.high ? value : std::nullopt;
   };
   if (x == std::string_view::npos) return std::nullopt;
   const std::optional<int> width = side(text.substr(0, x)), height = side(text.substr(x + 1));

@@ -3,7 +3,6 @@
 #include <fmt/format.h>
 
 #include <algorithm>
-#include <charconv>
 #include <nlohmann/json.hpp>
 #include <optional>
 #include <string_view>
@@ -59,12 +58,11 @@ Found follow(const json& value, std::string_view path, const PropertyRule& rule)
 
 Found followElements(const json& value, std::string_view path, const PropertyRule& rule) {
   const std::size_t close = path.find(']');
-  std::size_t count = 0;
-  const bool counted = std::from_chars(path.data() + 1, path.data() + close, count).ec == std::errc();
+  const std::optional<std::size_t> count = parseWhole<std::size_t>(path.substr(1, close - 1));
   if (!value.is_array())
-    return unaccepted(value, counted ? fmt::format("an array of {}", count) : std::string("an array"));
-  if (counted && value.size() != count)
-    return Problem{"", fmt::format("has {} elements; {} are accepted", value.size(), count)};
+    return unaccepted(value, count ? fmt::format("an array of {}", *count) : std::string("an array"));
+  if (count && value.size() != *count)
+    return Problem{"", fmt::format("has {} elements; {} are accepted", value.size(), *count)};
   for (std::size_t i = 0; i < value.size(); ++i) {
     if (Found problem = follow(value[i], path.substr(close + 1), rule)) {
       problem->place.insert(0, fmt::format("[{}]", i));

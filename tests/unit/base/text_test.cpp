@@ -3,10 +3,32 @@
 
 #include <gtest/gtest.h>
 
+#include <cstddef>
+#include <optional>
 #include <string>
 
 namespace limn {
 namespace {
+
+TEST(ParseWhole, TakesWholeNumbersInDecimal) {
+  EXPECT_EQ(parseWhole<int>("0"), 0);
+  EXPECT_EQ(parseWhole<int>("007"), 7);
+  EXPECT_EQ(parseWhole<int>("-12"), -12);
+  for (const char* other : {"", "-", "+1", " 1", "1 ", "1x", "1.0", "1e3", "0x10", "--1", "1-", "one"}) {
+    EXPECT_EQ(parseWhole<int>(other), std::nullopt) << other;
+    EXPECT_EQ(parseWhole<std::size_t>(other), std::nullopt) << other;
+  }
+}
+
+TEST(ParseWhole, TakesWhatTheTypeHolds) {
+  EXPECT_EQ(parseWhole<int>("2147483647"), 2147483647);
+  EXPECT_EQ(parseWhole<int>("-2147483648"), -2147483647 - 1);
+  EXPECT_EQ(parseWhole<int>("2147483648"), std::nullopt);
+  EXPECT_EQ(parseWhole<int>("-2147483649"), std::nullopt);
+  EXPECT_EQ(parseWhole<std::size_t>("18446744073709551615"), 18446744073709551615u);
+  EXPECT_EQ(parseWhole<std::size_t>("18446744073709551616"), std::nullopt);
+  EXPECT_EQ(parseWhole<std::size_t>("-1"), std::nullopt) << "which is no large number";
+}
 
 TEST(OneLine, IsOneLine) {
   EXPECT_EQ(oneLine("a\nb\tc\x7f d \r\n"), "a?b?c? d");
