@@ -4,7 +4,6 @@
 
 #include <algorithm>
 #include <array>
-#include <chrono>
 #include <utility>
 
 #include "core/base/error.h"
@@ -74,18 +73,10 @@ std::string summary(std::span<const ShaderDiagnostic> diagnostics, const std::st
   return text;
 }
 
-/// Mesa's shader cache skips the compilation, and with it the warnings, of a text that it has compiled
-/// before, be it in another process. A comment that never comes twice makes warnings reproducible; machine
-/// code is cached all the same.
-std::string uniqueComment() {
-  return fmt::format("// {}\n", std::chrono::system_clock::now().time_since_epoch().count());
-}
-
 ScopedName compileStage(Device& device, const std::string& label, const ShaderStage& stage) {
   const gl::Functions& gl = device.gl();
   ScopedName shader(gl.CreateShader(stageOf(stage.file)), gl.DeleteShader);
-  const std::string text = stage.source.text + (device.context().info().debug ? uniqueComment() : "");
-  const char* start = text.c_str();
+  const char* start = stage.source.text.c_str();
   gl.ShaderSource(shader.get(), 1, &start, nullptr);
   gl.CompileShader(shader.get());
   GLint compiled = GL_FALSE;

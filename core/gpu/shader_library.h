@@ -9,7 +9,8 @@
 // the defines, then the expanded text with #line directives; a compile error is reported as Error with the
 // original "file:line: message" of the diagnostics. A LIMN_ macro that an #if tests without asking defined()
 // must be defined, or the compilation fails. Warnings of the compiler are errors in debug contexts of
-// software renderers, where they name a limn file.
+// software renderers, where they name a limn file; a driver that finds a text in its cache does not compile
+// it, nor warn of it, again.
 #pragma once
 
 #include <filesystem>
