@@ -33,6 +33,7 @@ struct FitSettings {
   bool refine = true;
   int samples = 20000;  ///< pairs of directions the logarithmic fits look at
   TableFormat format = TableFormat::half;
+  bool operator==(const FitSettings&) const = default;
 };
 
 /// Returns the fit, with its error over a picture of 128 x 128 pixels under lights that nothing was fitted or

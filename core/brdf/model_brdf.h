@@ -1,11 +1,14 @@
-// Declares the models of materials (glsl/materials) as BRDFs. `measured` holds the tables of measured models
-// (Scene::measured).
+// Declares the models of materials (glsl/materials) as BRDFs, and their fits. `measured` holds the tables of
+// measured models (Scene::measured).
 #pragma once
 
+#include <cstddef>
 #include <glm/glm.hpp>
+#include <memory>
 #include <vector>
 
 #include "core/base/export.h"
+#include "core/brdf/factor_fit.h"
 #include "core/brdf/factor_tables.h"
 #include "glsl/materials/material_model.glsl"
 
@@ -19,5 +22,15 @@ LIMN_API Brdf modelBrdf(const glsl::MaterialModel& model, const std::vector<glm:
 /// wherever these lie.
 LIMN_API bool sameModel(const glsl::MaterialModel& a, const glsl::MaterialModel& b,
                         const std::vector<glm::vec3>& measured);
+
+/// The most memory, in bytes, of the fits that fitModel() keeps beside the last one.
+inline constexpr std::size_t kKeptFitBytes = std::size_t{64} << 20;
+
+/// Returns fitBrdf() of a model's f. The process keeps the fits that were asked for last, so that graphs,
+/// renderers and scenes with the same model and settings share one. Threads may call it at once. Throws as
+/// fitBrdf() does, and keeps nothing then.
+LIMN_API std::shared_ptr<const FactoredBrdf> fitModel(const glsl::MaterialModel& model,
+                                                      const std::vector<glm::vec3>& measured,
+                                                      const FitSettings& settings);
 
 }  // namespace limn::brdf

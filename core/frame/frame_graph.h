@@ -272,7 +272,8 @@ struct PassTime {
   double milliseconds = 0;
 };
 
-/// Holds textures and buffers that outlive a graph, so that a rebuilt graph reuses their memory.
+/// Holds textures and buffers that outlive a graph, so that a rebuilt graph reuses their memory. A graph that
+/// is prepared takes what fits and frees what no prepared graph uses, before it makes the rest.
 class LIMN_API ResourcePool {
  public:
   explicit ResourcePool(gpu::Device& device);

@@ -1,7 +1,10 @@
 // Programs and memory for the passes that are kept.
 #include <fmt/format.h>
 
+#include <memory>
 #include <set>
+#include <utility>
+#include <vector>
 
 #include "core/base/error.h"
 #include "core/frame/private/graph_data.h"
@@ -82,12 +85,28 @@ void FrameGraph::prepare(gpu::Device& device, gpu::ShaderLibrary& shaders, Resou
   graph.release();
   plan();
   compilePrograms(graph, shaders, progress);
-  for (const Physical& physical : graph.physicals) {
-    const std::string label = labelOf(graph, physical);
+  // What no graph uses any more is freed before more memory is taken, or that of two graphs would be held at
+  // once.
+  ResourcePool::Implementation& kept = *pool.implementation_;
+  const size_t count = graph.physicals.size();
+  std::vector<std::shared_ptr<gpu::Texture>> textures(count);
+  std::vector<std::shared_ptr<gpu::Buffer>> buffers(count);
+  for (size_t i = 0; i < count; ++i) {
+    const Physical& physical = graph.physicals[i];
+    if (physical.texture)
+      textures[i] = kept.findTexture(labelOf(graph, physical), physical.textureDesc);
+    else
+      buffers[i] = kept.findBuffer(labelOf(graph, physical), physical.bufferBytes);
+  }
+  pool.trim();
+  for (size_t i = 0; i < count; ++i) {
+    const Physical& physical = graph.physicals[i];
     if (physical.texture) {
-      graph.textures.push_back(pool.implementation_->texture(label, physical.textureDesc));
+      if (!textures[i]) textures[i] = kept.makeTexture(labelOf(graph, physical), physical.textureDesc);
+      graph.textures.push_back(std::move(textures[i]));
     } else {
-      graph.buffers.push_back(pool.implementation_->buffer(label, physical.bufferBytes));
+      if (!buffers[i]) buffers[i] = kept.makeBuffer(labelOf(graph, physical), physical.bufferBytes);
+      graph.buffers.push_back(std::move(buffers[i]));
     }
     for (uint32_t r : physical.resources) {
       if (physical.texture) graph.resources[r].textureObject = graph.textures.back().get();

@@ -15,24 +15,33 @@ void relabel(const gpu::Device& device, GLenum kind, GLuint id, std::string_view
 
 }  // namespace
 
-std::shared_ptr<gpu::Texture> ResourcePool::Implementation::texture(std::string_view label,
-                                                                    const gpu::TextureDesc& desc) {
+std::shared_ptr<gpu::Texture> ResourcePool::Implementation::findTexture(std::string_view label,
+                                                                        const gpu::TextureDesc& desc) {
   for (const auto& texture : textures) {
     if (texture.use_count() == 1 && texture->desc() == desc) {
       relabel(device, GL_TEXTURE, texture->id(), label);
       return texture;
     }
   }
+  return nullptr;
+}
+
+std::shared_ptr<gpu::Texture> ResourcePool::Implementation::makeTexture(std::string_view label,
+                                                                        const gpu::TextureDesc& desc) {
   return textures.emplace_back(std::make_shared<gpu::Texture>(device, label.substr(0, kLongestLabel), desc));
 }
 
-std::shared_ptr<gpu::Buffer> ResourcePool::Implementation::buffer(std::string_view label, size_t bytes) {
+std::shared_ptr<gpu::Buffer> ResourcePool::Implementation::findBuffer(std::string_view label, size_t bytes) {
   for (const auto& buffer : buffers) {
     if (buffer.use_count() == 1 && buffer->size() == bytes) {
       relabel(device, GL_BUFFER, buffer->id(), label);
       return buffer;
     }
   }
+  return nullptr;
+}
+
+std::shared_ptr<gpu::Buffer> ResourcePool::Implementation::makeBuffer(std::string_view label, size_t bytes) {
   return buffers.emplace_back(std::make_shared<gpu::Buffer>(device, label.substr(0, kLongestLabel), bytes));
 }
 

@@ -89,7 +89,7 @@ std::optional<brdf::FactoredBrdf> fitted(const scene::Scene& scene, const scene:
                                          const FitChoice& choice) {
   if (choice.analytic) return analyticTables(*material.model, choice);
   try {
-    return brdf::fitBrdf(brdf::modelBrdf(*material.model, scene.measured), choice.fit);
+    return *brdf::fitModel(*material.model, scene.measured, choice.fit);
   } catch (const UsageError&) {
     throw;
   } catch (const Error&) {

@@ -39,7 +39,8 @@ struct MaterialFits {
   bool complete(const scene::Scene& scene) const;
 };
 
-/// Returns the tables. A numerical fit takes about a second for each different material; equal ones share it.
+/// Returns the tables. A numerical fit takes about a second for each different material; equal ones share it,
+/// and the process keeps it for the next graph (brdf::fitModel).
 /// Materials with a model have a row without a fit where the choice cannot hold them: `analytic` all but
 /// Torrance-Sparrow, Ward and Banks after Stalling, dfg, pqp, tables and trilinear those that turn with the
 /// tangent, and every fit those that are black.

@@ -91,6 +91,18 @@ TEST_F(FrameGraphGpu, aRebuiltGraphFindsItsMemoryAgain) {
   EXPECT_EQ(pool_->bytes(), 0);
 }
 
+TEST_F(FrameGraphGpu, aGraphKeepsNoMemoryOfTheLastBesideItsOwn) {
+  int64_t one = 0;
+  for (const bool both : {false, true, false}) {
+    FrameGraph graph;
+    const TextureHandle start = set(graph, "start", 1);
+    graph.output(both ? add(graph, "sum", start, 2) : start);
+    prepare(graph);
+    if (one == 0) one = pool_->bytes();
+    EXPECT_EQ(pool_->bytes(), both ? 2 * one : one);
+  }
+}
+
 TEST_F(FrameGraphGpu, cachedPassesRunAgainWhenTheirInputsChange) {
   gpu::Texture source(device(), "source", kValueDesc);
   source.clear({1, 0, 0, 0});

@@ -14,8 +14,11 @@ struct ResourcePool::Implementation {
   std::vector<std::shared_ptr<gpu::Texture>> textures;
   std::vector<std::shared_ptr<gpu::Buffer>> buffers;
 
-  std::shared_ptr<gpu::Texture> texture(std::string_view label, const gpu::TextureDesc& desc);
-  std::shared_ptr<gpu::Buffer> buffer(std::string_view label, size_t bytes);
+  /// Returns a free one of that kind, which has the label from now on; null: there is none.
+  std::shared_ptr<gpu::Texture> findTexture(std::string_view label, const gpu::TextureDesc& desc);
+  std::shared_ptr<gpu::Buffer> findBuffer(std::string_view label, size_t bytes);
+  std::shared_ptr<gpu::Texture> makeTexture(std::string_view label, const gpu::TextureDesc& desc);
+  std::shared_ptr<gpu::Buffer> makeBuffer(std::string_view label, size_t bytes);
 };
 
 }  // namespace limn::frame

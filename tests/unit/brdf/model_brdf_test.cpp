@@ -6,6 +6,7 @@
 #include <numbers>
 #include <vector>
 
+#include "core/base/error.h"
 #include "core/brdf/measured_model.h"
 #include "tests/unit/materials/models.h"
 
@@ -70,6 +71,43 @@ TEST(ModelBrdf, OtherModelsAreTheSameByTheirNumbers) {
   EXPECT_FALSE(sameModel(phong, glsl::phongModel(0.3f, 0.2f, 11), none));
   EXPECT_FALSE(sameModel(phong, glsl::phongModel(0.3f, 0.1f, 10), none));
   EXPECT_FALSE(sameModel(phong, glsl::banksModel(0.3f, 0.2f, 10), none));
+}
+
+/// Of the same model and settings there is one, whatever its material is called and wherever its table lies.
+TEST(ModelFit, IsMadeOnceForEachModelAndSettings) {
+  const FitSettings settings{.factorisation = Factorisation::trilinear, .texels = 4, .samples = 200};
+  std::vector<glm::vec3> measured(7, glm::vec3(9));
+  TabulatedBrdf table = constantTable();
+  const glsl::MaterialModel phong = glsl::phongModel(0.3f, 0.2f, 10), one = appended(table, measured);
+  const auto ofPhong = fitModel(phong, measured, settings), ofTable = fitModel(one, measured, settings);
+  EXPECT_NE(ofTable, ofPhong);
+  const FactoredBrdf plain = fitBrdf(modelBrdf(phong, measured), settings);
+  EXPECT_EQ(ofPhong->name, plain.name);
+  EXPECT_EQ(ofPhong->error, plain.error);
+  ASSERT_EQ(ofPhong->tables.size(), plain.tables.size());
+  EXPECT_EQ(ofPhong->tables.front().texels, plain.tables.front().texels);
+
+  glsl::MaterialModel other = phong;
+  other.material = 5;
+  EXPECT_EQ(fitModel(other, {}, settings), ofPhong);
+  std::vector<glm::vec3> elsewhere(11, glm::vec3(9));
+  EXPECT_EQ(fitModel(appended(table, elsewhere), elsewhere, settings), ofTable);
+
+  other.exponent = 11;
+  EXPECT_NE(fitModel(other, {}, settings), ofPhong);
+  FitSettings finer = settings;
+  finer.texels = 6;
+  EXPECT_NE(fitModel(phong, {}, finer), ofPhong);
+  table.values.back().z += 1e-3f;
+  EXPECT_NE(fitModel(appended(table, elsewhere), elsewhere, settings), ofTable);
+  EXPECT_EQ(fitModel(phong, {}, settings), ofPhong) << "it is still there";
+}
+
+/// What throws is asked again, and throws again.
+TEST(ModelFit, BlackModelsHaveNone) {
+  const glsl::MaterialModel black = glsl::phongModel(0, 0, 10);
+  for (int i = 0; i < 2; ++i)
+    EXPECT_THROW(fitModel(black, {}, {.factorisation = Factorisation::trilinear, .texels = 4}), Error);
 }
 
 }  // namespace

@@ -6,6 +6,7 @@
 #include <gtest/gtest.h>
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <map>
 #include <string>
@@ -42,19 +43,49 @@ double mappedPower(const Sky& sky, const vec3& axis, float alpha) {
          weight * filteredPower(sky, axis, power_level_alpha(place.wider));
 }
 
-/// What the lobe of a model reflects, in the first channel.
-double exactLobe(const Sky& sky, MaterialModel m, const vec3& n, const vec3& v) {
-  m.kd = vec3(0);
+/// What the lobe of a model reflects of each sky, in the first channel.
+using OfSkies = std::array<double, kSkies.size()>;
+OfSkies exactLobes(const MaterialModel& m, const vec3& n, const vec3& v) {
   const Frame frame = frame_around(n);
   const vec3 local = to_local(frame, v);
-  double sum = 0;
+  OfSkies sums{};
   for (int i = 0; i < kSide * kSide; ++i) {
     const vec3 l = model_sample(m, local, vec3(gridPoint(i), 0));
     const float pdf = model_pdf(m, local, l);
-    if (pdf > 0)
-      sum += static_cast<double>(model_response(m, local, l).x / pdf) * sky.radiance(from_local(frame, l));
+    if (!(pdf > 0)) continue;
+    const auto weight = static_cast<double>(model_response(m, local, l).x / pdf);
+    for (size_t s = 0; s < kSkies.size(); ++s) sums[s] += weight * kSkies[s].radiance(from_local(frame, l));
   }
-  return sum / (kSide * kSide);
+  for (double& sum : sums) sum /= kSide * kSide;
+  return sums;
+}
+
+/// What it reflects of one. Each lobe is sampled once for all skies.
+double exactLobe(const Sky& sky, MaterialModel m, const vec3& n, const vec3& v) {
+  m.kd = vec3(0);
+  static std::map<std::array<float, 20>, OfSkies> known;
+  const auto [entry, added] = known.try_emplace({static_cast<float>(m.kind),
+                                                 static_cast<float>(m.options),
+                                                 m.exponent,
+                                                 m.roughness.x,
+                                                 m.roughness.y,
+                                                 m.eta.x,
+                                                 m.eta.y,
+                                                 m.eta.z,
+                                                 m.k.x,
+                                                 m.k.y,
+                                                 m.k.z,
+                                                 m.ks.x,
+                                                 m.ks.y,
+                                                 m.ks.z,
+                                                 n.x,
+                                                 n.y,
+                                                 n.z,
+                                                 v.x,
+                                                 v.y,
+                                                 v.z});
+  if (added) entry->second = exactLobes(m, n, v);
+  return entry->second.at(static_cast<size_t>(&sky - kSkies.data()));
 }
 
 /// Each lobe of microfacets is summed once, too: lookups differ in what they take of it.
