@@ -10,6 +10,7 @@
 #include <vector>
 
 #include "core/base/error.h"
+#include "core/caustics/private/light_reach.h"
 #include "core/caustics/ray_lists.h"
 #include "core/caustics/specular_buffers.h"
 #include "core/gpu_scene/light_textures.h"
@@ -45,7 +46,8 @@ glsl::Light aimed(const glsl::Light& light, const glm::vec3& origin, const scene
 
 /// One set of rays and what it is made from.
 struct Request {
-  std::vector<uint32_t> lights;
+  std::vector<uint32_t> asked;   ///< lights that do not stand for the environment
+  std::vector<uint32_t> lights;  ///< those of them that have rays
   CausticRayDesc desc;
   CausticRays made;
   std::vector<glm::vec2> samples;  ///< as ShadowMapDesc has them
@@ -72,6 +74,15 @@ struct CausticRayService::Implementation {
     boxes.clear();
     for (uint32_t i = 0; i < scene.instanceCount(); ++i)
       if (scene.specular(i) && !scene.bounds(i).empty()) boxes.push_back(scene.bounds(i));
+  }
+  /// Whether a light may reach a specular object.
+  bool reaches(uint32_t light) const { return mayReach(lights.at(light), boxes); }
+  /// Whether a light without rays needs some. One that no longer does keeps them while the graph lives, so
+  /// that a light that comes and goes does not have it built again each time.
+  bool lacksLights(const Request& request) const {
+    return std::ranges::any_of(request.asked, [&](uint32_t light) {
+      return std::ranges::find(request.lights, light) == request.lights.end() && reaches(light);
+    });
   }
   void fit(Request& request) const;
   void upload(Request& request) const;
@@ -139,7 +150,7 @@ frame::BufferHandle CausticRayService::Implementation::trace(const Request& requ
                                                             {"front_geometric_normal", front.geometricNormal},
                                                             {"back_geometric_normal", back.geometricNormal}};
   for (const auto& [name, texture] : specular)
-    pass.read(texture, Access::sampled, name, "where light is reflected and refracted");
+    if (texture) pass.read(texture, Access::sampled, name, "where light is reflected and refracted");
   const frame::BufferHandle rays =
       pass.write(graph.createBuffer("caustic rays",
                                     {static_cast<size_t>(request.made.count()) * sizeof(glsl::CausticRay)}),
@@ -202,7 +213,9 @@ CausticRays CausticRayService::Implementation::add(std::unique_ptr<Request> made
                        .specular = false});
   request.made.sceneLights =
       static_cast<int>(request.lights.size() * std::max<size_t>(request.samples.size(), 1));
-  request.buffers.add(context.graph, context.handles, request.importedViews, request.desc.size, "caustics");
+  const bool refracts = (request.desc.paths & glsl::caustic_refraction) != 0;
+  request.buffers.add(context.graph, context.handles, request.importedViews, request.desc.size,
+                      refracts ? GeometricNormals::both : GeometricNormals::front, "caustics");
   request.made.rays = trace(request, context);
   return request.made;
 }
@@ -220,11 +233,18 @@ CausticRays CausticRayService::request(std::span<const uint32_t> lights, const C
   Implementation& s = *implementation_;
   auto made = std::make_unique<Request>(s.scene);
   if (!s.boxes.empty())
-    std::ranges::copy_if(lights, std::back_inserter(made->lights), [&](uint32_t light) {
+    std::ranges::copy_if(lights, std::back_inserter(made->asked), [&](uint32_t light) {
       return (s.lights.at(light).flags & glsl::light_flag_environment) == 0;
     });
   for (const auto& known : s.requests)
-    if (known->desc == desc && known->lights == made->lights) return known->made;
+    if (known->desc == desc && known->asked == made->asked) return known->made;
+  for (const uint32_t light : made->asked) {
+    if (s.reaches(light))
+      made->lights.push_back(light);
+    else
+      context().graph.leaveOut(fmt::format("rays of light {}", context().pose.lightNames.at(light)),
+                               "caustics", "it reaches no specular surface");
+  }
   made->desc = desc;
   for (int i = 0; desc.lightSamples > 1 && i < desc.lightSamples; ++i)
     made->samples.push_back(glsl::r2_sequence(static_cast<uint32_t>(i) + 1));
@@ -237,6 +257,7 @@ bool CausticRayService::update(frame::FrameGraph& graph, const scene::Pose& pose
   s.take(pose);
   if (lightsCameOrWent || some == s.boxes.empty()) return true;
   for (const auto& request : s.requests) {
+    if (s.lacksLights(*request)) return true;
     if (request->views.empty()) continue;
     std::vector<glsl::ShadowView>&views = request->views, &last = request->lastViews;
     std::vector<glsl::CausticLayer>&layers = request->layers, &lastLayers = request->lastLayers;

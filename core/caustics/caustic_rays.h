@@ -1,6 +1,6 @@
 // Declares the service that traces caustic rays: techniques request the light that some lights send through
 // or off the scene's specular objects. It is traced once per graph, however many techniques request it, and
-// kept while nothing changes, the camera included: the frame block holds the medium (thesis, section 8.3.2).
+// kept while nothing but the camera changes (thesis, section 8.3.2).
 //
 // Each layer is a view of the specular objects from a light, or from a point on a light with extent. The
 // stages are the depth of the scene without specular objects as the light sees it (ShadowMapService), the
@@ -56,13 +56,14 @@ class LIMN_API CausticRayService : public FrameService {
   ~CausticRayService() override;
 
   /// Returns the rays of `lights` (indices into Pose::lights). Lights that stand for the environment have
-  /// none. Throws UsageError when the rays would take too much memory.
+  /// none, and neither have those whose cone, range or side keeps all of their light from specular objects.
+  /// Throws UsageError when the rays would take too much memory.
   CausticRays request(std::span<const uint32_t> lights, const CausticRayDesc& desc);
 
  private:
   void begin() override;
-  /// Refits the views. Returns true when a light needs another number of layers, or when specular objects
-  /// appeared or disappeared.
+  /// Refits the views. Returns true when a light needs another number of layers, when one that had no rays
+  /// reaches a specular object, or when specular objects appeared or disappeared.
   bool update(frame::FrameGraph& graph, const scene::Pose& pose) override;
 
   struct Implementation;

@@ -23,6 +23,7 @@ RayLists addRayLists(frame::FrameGraph& graph, const CausticRays& rays, const Ra
   frame::PassBuilder sort = graph.addPass("ray kinds", sorting.technique);
   sort.read(rays.rays, Access::storageLoad, "Rays", "rays to draw");
   if (sorting.declare) sorting.declare(sort);
+  if (sorting.kept) sort.cacheable();
   const frame::BufferHandle runs =
       sort.write(graph.createBuffer("ray runs", {static_cast<size_t>(runCount) * sizeof(glsl::RayRun)}),
                  Access::storageStore, "RayRuns", "kinds of rays");
@@ -38,6 +39,7 @@ RayLists addRayLists(frame::FrameGraph& graph, const CausticRays& rays, const Ra
   });
 
   frame::PassBuilder sum = graph.addPass("ray places", sorting.technique);
+  if (sorting.kept) sum.cacheable();
   const frame::BufferHandle placed =
       sum.write(counted, Access::storageLoadStore, "RayGroups", "where each group's rays begin");
   const frame::BufferHandle draws = sum.write(
@@ -56,6 +58,7 @@ RayLists addRayLists(frame::FrameGraph& graph, const CausticRays& rays, const Ra
   });
 
   frame::PassBuilder list = graph.addPass("ray lists", sorting.technique);
+  if (sorting.kept) list.cacheable();
   list.read(runs, Access::storageLoad, "RayRuns", "kinds of rays")
       .read(placed, Access::storageLoad, "RayGroups", "where each group's rays begin")
       .read(draws, Access::storageLoad, "RayDraws", "where each kind begins");

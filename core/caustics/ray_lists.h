@@ -35,6 +35,9 @@ struct RaySorting {
   /// glsl/caustics/ray_kinds.glsl.
   gpu::ProgramDesc program;
   std::array<RayKind, glsl::ray_kinds> kinds;
+  /// Says whether kinds depend on nothing but the rays and what `declare` says, the camera left out: the
+  /// lists are kept while these do not change.
+  bool kept = false;
   std::function<void(frame::PassBuilder&)> declare = {};  ///< what else it reads
   std::function<void(gpu::Program&)> bind = {};           ///< sets its uniforms
 };

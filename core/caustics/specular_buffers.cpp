@@ -21,14 +21,14 @@ void SpecularBuffers::setViews(std::span<const glsl::ShadowView> views) {
 }
 
 void SpecularBuffers::add(frame::FrameGraph& graph, const SceneHandles& handles, frame::BufferHandle views,
-                          int size, const char* owner) {
-  front_ = addPass(graph, handles, views, size, owner, nullptr);
-  back_ = addPass(graph, handles, views, size, owner, &front_);
+                          int size, GeometricNormals normals, const char* owner) {
+  front_ = addPass(graph, handles, views, size, normals != GeometricNormals::none, owner, nullptr);
+  back_ = addPass(graph, handles, views, size, normals == GeometricNormals::both, owner, &front_);
 }
 
 /// Nearest surfaces, or farthest ones of the instances in `front`.
 SpecularBuffer SpecularBuffers::addPass(frame::FrameGraph& graph, const SceneHandles& handles,
-                                        frame::BufferHandle views, int size, const char* owner,
+                                        frame::BufferHandle views, int size, bool normals, const char* owner,
                                         const SpecularBuffer* front) {
   const bool back = front != nullptr;
   frame::PassBuilder pass = graph.addPass(back ? "specular back" : "specular front", owner);
@@ -39,7 +39,7 @@ SpecularBuffer SpecularBuffers::addPass(frame::FrameGraph& graph, const SceneHan
   const scene::SurfacePrograms programs = scene_.declareSurfaces(
       pass, handles,
       {.files = {"glsl/caustics/specular.vert.glsl", "glsl/caustics/specular.frag.glsl"},
-       .defines = {{"BACK", back ? "1" : "0"}, {"MASKED", "0"}}},
+       .defines = {{"BACK", back ? "1" : "0"}, {"GEOMETRIC_NORMALS", normals ? "1" : "0"}, {"MASKED", "0"}}},
       masked);
   pass.read(views, Access::storageLoad, "Views", "projections").cacheable();
   if (back) pass.read(front->surface, Access::sampled, "front", "instances whose back is wanted");
@@ -55,15 +55,19 @@ SpecularBuffer SpecularBuffers::addPass(frame::FrameGraph& graph, const SceneHan
   SpecularBuffer buffer;
   buffer.surface = pass.write(create("specular surface", GL_RGBA32F), Access::colourAttachment, "normals");
   buffer.depth = pass.write(create("specular depth", GL_R32F), Access::colourAttachment, "linear depth");
-  buffer.geometricNormal = pass.write(create("specular geometric normal", GL_RG16_SNORM),
-                                      Access::colourAttachment, "normals of triangles");
+  if (normals)
+    buffer.geometricNormal = pass.write(create("specular geometric normal", GL_RG16_SNORM),
+                                        Access::colourAttachment, "normals of triangles");
   const TextureHandle zbuffer =
       pass.write(create("specular z", GL_DEPTH_COMPONENT32F), Access::depthAttachment, "nearest or farthest");
   pass.execute([this, programs, buffer, zbuffer, back](frame::PassContext& context) {
     const auto bind = [&](int layer) {
-      context.bindFramebuffer(
-          {{buffer.surface, 0, layer}, {buffer.depth, 0, layer}, {buffer.geometricNormal, 0, layer}},
-          {zbuffer, 0, layer});
+      const frame::PassContext::Target surface{buffer.surface, 0, layer}, depth{buffer.depth, 0, layer},
+          z{zbuffer, 0, layer};
+      if (buffer.geometricNormal)
+        context.bindFramebuffer({surface, depth, {buffer.geometricNormal, 0, layer}}, z);
+      else
+        context.bindFramebuffer({surface, depth}, z);
     };
     bind(-1);
     constexpr GLfloat none[4] = {0, 0, 0, 0}, farthest[4] = {1, 1, 1, 1}, far = 0;

@@ -18,9 +18,13 @@ namespace limn::caustics {
 struct SpecularBuffer {
   frame::TextureHandle
       surface;  ///< RGBA32F: shading normal; w: +-(instance + 1), negative where the back shows
-  frame::TextureHandle depth;            ///< R32F: linear depth (shadow_normalise), 1 where there is nothing
-  frame::TextureHandle geometricNormal;  ///< RG16_SNORM: octahedral, of the triangle's front face
+  frame::TextureHandle depth;  ///< R32F: linear depth (shadow_normalise), 1 where there is nothing
+  /// RG16_SNORM: octahedral, of the triangle's front face; empty where nobody asked for it.
+  frame::TextureHandle geometricNormal;
 };
+
+/// Says which sides have geometric normals. Each fragment takes them from the corners of its triangle.
+enum class GeometricNormals { none, front, both };
 
 /// Returns the parameter that shaders with glsl/caustics/specular_buffers.glsl take as EXIT_STEPS. Software
 /// renderers leave the loops of a thread after 65,535 steps, of which a path may make 15 such searches.
@@ -40,14 +44,14 @@ class LIMN_API SpecularBuffers {
   /// instances that the front shows) on behalf of `owner`. `views` is a storage buffer of the views; `size`
   /// is the number of texels per side. The object must outlive the graph.
   void add(frame::FrameGraph& graph, const SceneHandles& handles, frame::BufferHandle views, int size,
-           const char* owner);
+           GeometricNormals normals, const char* owner);
 
   const SpecularBuffer& front() const { return front_; }
   const SpecularBuffer& back() const { return back_; }
 
  private:
   SpecularBuffer addPass(frame::FrameGraph& graph, const SceneHandles& handles, frame::BufferHandle views,
-                         int size, const char* owner, const SpecularBuffer* front);
+                         int size, bool normals, const char* owner, const SpecularBuffer* front);
 
   scene::GpuScene& scene_;
   std::vector<scene::DepthView> depthViews_;

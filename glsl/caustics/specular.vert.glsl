@@ -1,5 +1,5 @@
-// Specular objects as the views of caustic rays see them. BACK 1: the farthest surface wins instead of the nearest. MASKED 1:
-// passes on what an alpha test needs. COLOURS 1: vertex colours.
+// Specular objects as the views of caustic rays see them. BACK 1: the farthest surface wins instead of the nearest.
+// GEOMETRIC_NORMALS 1: passes on what triangles' normals need. MASKED 1: what an alpha test needs. COLOURS 1: vertex colours.
 #include "glsl/scene/blocks.glsl"
 #include "glsl/shadow/shadow_view.glsl"
 #include "glsl/geometry/vertex.glsl"
@@ -23,7 +23,9 @@ layout(location = 3) out vec4 surface_colour;
 #endif
 layout(location = 4) flat out uvec3 surface_instance;  // draw instance, first vertex, first index
 layout(location = 5) flat out uint layer;
+#if GEOMETRIC_NORMALS
 layout(location = 6) out vec3 from_eye;  // of the view, towards the surface
+#endif
 
 void main() {
   ShadowView view = views[entry.y];
@@ -35,7 +37,9 @@ void main() {
   normal_ws = mat3(instances[entry.x].normal_to_world) * vertex_unpack_normal(directions.x);
   linear_depth = shadow_normalise(view, shadow_view_depth(view, world));
   layer = view.layer;
+#if GEOMETRIC_NORMALS
   from_eye = view.projection == shadow_orthographic ? view.axis_z : world - view.origin;
+#endif
   surface_instance = uvec3(entry.x, instances[entry.x].first_vertex, instances[entry.x].first_index);
 #if MASKED
   surface_uv = uv;

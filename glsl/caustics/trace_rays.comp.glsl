@@ -14,7 +14,9 @@
 layout(local_size_x = 8, local_size_y = 8) in;
 uniform sampler2DArray scene_depth;  // without specular objects
 uniform sampler2DArray front_geometric_normal;
+#if PATHS & 2
 uniform sampler2DArray back_geometric_normal;
+#endif
 layout(std430) readonly buffer Lights { Light lights[]; };
 layout(std430) readonly buffer Views { ShadowView views[]; };
 layout(std430) readonly buffer Layers { CausticLayer layers[]; };
@@ -164,18 +166,20 @@ CausticRay ray_from(Medium medium, SceneMaps maps, Incident at, vec3 start, vec3
 
 vec3 geometric_normal_at(sampler2DArray normals, ivec3 texel) { return octahedral_decode(texelFetch(normals, texel, 0).xy); }
 
+CausticRay reflected_ray(Medium medium, SceneMaps maps, Incident at, SpecularEvent event) {
+  if (at.inside && at.optics.thickness > 0.0) return no_ray();  // a sheet has no within
+  float adjoint = shading_flux(at.normal, at.geometric, at.direction, event.reflected);
+  return ray_from(medium, maps, at, at.position, event.reflected, at.flux * event.reflectance * adjoint);
+}
+
+#if PATHS & 2
+
 // Of the triangle on which light leaves a body.
 vec3 exit_triangle(BodyExit leaves) {
   ivec2 size = textureSize(front_geometric_normal, 0).xy;
   ivec3 texel = ivec3(clamp(ivec2(leaves.uv * vec2(size)), ivec2(0), size - 1), leaves.layer);
   return leaves.front ? geometric_normal_at(front_geometric_normal, texel)
                       : geometric_normal_at(back_geometric_normal, texel);
-}
-
-CausticRay reflected_ray(Medium medium, SceneMaps maps, Incident at, SpecularEvent event) {
-  if (at.inside && at.optics.thickness > 0.0) return no_ray();  // a sheet has no within
-  float adjoint = shading_flux(at.normal, at.geometric, at.direction, event.reflected);
-  return ray_from(medium, maps, at, at.position, event.reflected, at.flux * event.reflectance * adjoint);
 }
 
 CausticRay refracted_ray(Medium medium, SceneMaps maps, Incident at, SpecularEvent event, float diameter) {
@@ -192,6 +196,8 @@ CausticRay refracted_ray(Medium medium, SceneMaps maps, Incident at, SpecularEve
   flux *= shading_flux(leaves.normal, exit_triangle(leaves), event.refracted, second.refracted);
   return ray_from(medium, maps, at, at.position + leaves.distance * event.refracted, second.refracted, flux);
 }
+
+#endif
 
 void main() {
   ivec3 at = ivec3(gl_GlobalInvocationID);

@@ -88,6 +88,16 @@ LIMN_FN vec2 light_cone_range(Light light, vec3 eye, vec3 w) {
   return d_o + 0.5f * (low + high) * dw > 0.0f ? vec2(middle + low, middle + high) : vec2(1.0f, -1.0f);
 }
 
+// Where the ray is within the light's range: t in [x, y]; x > y where it misses. All of it where the range is unlimited.
+LIMN_FN vec2 light_ball_range(Light light, vec3 eye, vec3 w) {
+  const float far = 3.0e38f;
+  if (light.type == light_directional || !(light.range > 0.0f)) return vec2(-far, far);
+  Ball ball;
+  ball.centre = light.position;
+  ball.radius = light.range;
+  return ball_range(ball, eye, w);
+}
+
 // A place on the ray, and the light that comes there.
 struct AirlightPoint {
   vec3 place;

@@ -1,6 +1,6 @@
 // The scene's medium as passes read it that bind the frame block. MEDIUM_STEPS 0: its density is 1 everywhere in its ball; else
-// it is a volume (core/gpu_scene/gpu_medium.h declares and binds it), looked up at MEDIUM_STEPS points of a ray from one face of its
-// box to the opposite one, and at points in proportion of a shorter or a longer ray.
+// it is a volume (core/gpu_scene/gpu_medium.h declares and binds it), looked up at MEDIUM_STEPS points of a ray from one face of
+// its box to the opposite one, and at points in proportion of a shorter or a longer ray.
 #ifndef LIMN_MEDIUM_INPUT_GLSL
 #define LIMN_MEDIUM_INPUT_GLSL
 #include "glsl/scene/blocks.glsl"

@@ -95,8 +95,9 @@ vec3 airlight(Medium medium, Light light, ShadowLight maps, vec3 direction, floa
   ray.first_layer = maps.first_layer;
   ray.source = maps.origin;
   vec2 cone = light_cone_range(light, frame.camera_position.xyz, direction);
-  a = max(a, cone.x);
-  b = min(b, cone.y);
+  vec2 ball = light_ball_range(light, frame.camera_position.xyz, direction);
+  a = max(a, max(cone.x, ball.x));
+  b = min(b, min(cone.y, ball.y));
   if (!(a < b)) return vec3(0.0);
   float from = airlight_path_variable(ray.path, ray.kind, a);
   float to = airlight_path_variable(ray.path, ray.kind, b);

@@ -117,7 +117,7 @@ class ImageSpaceRefraction : public Technique {
     viewBuffer_ = gpu::Buffer::of<glsl::ShadowView>(scene_->device(), "camera's view of specular objects",
                                                     {&view_, 1}, gpu::BufferUse::updated);
     views_ = graph.importBuffer("camera's view of specular objects", viewBuffer_);
-    buffers_->add(graph, inputs.handles, views_, size_, info.name);
+    buffers_->add(graph, inputs.handles, views_, size_, caustics::GeometricNormals::none, info.name);
     return addRefraction(inputs, request.target);
   }
 

@@ -15,6 +15,9 @@ using frame::Access;
 
 namespace {
 
+/// Every device dispatches 65535 work groups in a row, each of which may take 64 leaves.
+constexpr size_t kMostLeavesOfChunk = size_t{64} * 65535;
+
 size_t rowBytes(const ElementSettings& settings) {
   const auto n = static_cast<size_t>(settings.links.resolution);
   return 6 * n * n * sizeof(uint32_t);
@@ -64,6 +67,14 @@ ElementPasses::ElementPasses(frame::FrameGraph& graph, const TechniqueInputs& in
 
 void ElementPasses::createBuffers(gpu::Device& device) {
   const auto groupsNow = elements_.forest().groups();
+  const auto most = static_cast<size_t>(device.limits().maxStorageBlockBytes);
+  const size_t largest =
+      std::max({groupsNow.size_bytes(), elements_.leaves().size_bytes(), elements_.triangles().size_bytes()});
+  if (largest > most)
+    throw UsageError(fmt::format(
+        "implicit visibility: {} elements take {} MiB, more than the {} MiB of a storage buffer; raise "
+        "longest_edge",
+        slots(), largest >> 20, most >> 20));
   groupBuffer_ = gpu::Buffer(device, "element groups", groupsNow.size_bytes(), gpu::BufferUse::updated);
   leafBuffer_ = gpu::Buffer(device, "leaves", elements_.leaves().size_bytes(), gpu::BufferUse::updated);
   cornerBuffer_ = gpu::Buffer::of(device, "triangles between leaves", elements_.triangles());
@@ -78,17 +89,15 @@ void ElementPasses::createBuffers(gpu::Device& device) {
   if (glossy()) {
     materialBuffer_ = gpu::Buffer::of(device, "materials of leaves", elements_.materials());
     const size_t bytes = size_t{slots()} * sentCount() * sizeof(glm::vec4);
-    if (bytes > static_cast<size_t>(device.limits().maxStorageBlockBytes))
+    if (bytes > most)
       throw UsageError(fmt::format(
           "implicit visibility: what {} elements send into 6 x {} x {} bins takes {} MiB; a storage block "
           "holds {}",
-          slots(), settings_.glossy, settings_.glossy, bytes >> 20,
-          device.limits().maxStorageBlockBytes >> 20));
+          slots(), settings_.glossy, settings_.glossy, bytes >> 20, most >> 20));
   }
-  const auto most =
-      static_cast<uint32_t>(static_cast<size_t>(device.limits().maxStorageBlockBytes) / rowBytes(settings_));
-  for (uint32_t first = 0; first < std::max(leafSlots(), 1u); first += most) {
-    const uint32_t count = std::min(most, leafSlots() - first);
+  const auto together = static_cast<uint32_t>(std::min(most / rowBytes(settings_), kMostLeavesOfChunk));
+  for (uint32_t first = 0; first < std::max(leafSlots(), 1u); first += together) {
+    const uint32_t count = std::min(together, leafSlots() - first);
     linkBuffers_.emplace_back(device, fmt::format("links from leaf {}", first), count * rowBytes(settings_),
                               gpu::BufferUse::updated);
     chunks.push_back({{}, first, count});
@@ -121,6 +130,7 @@ void ElementPasses::addLinks(frame::FrameGraph& graph) {
       links_.buildFlat(elements_.forest(), settings_.links);
     else
       links_.build(elements_.forest(), settings_.links);
+    if (!linksRead_) return;
     for (size_t i = 0; i < chunks.size(); ++i)
       linkBuffers_[i].update(0, links_.links().data() + chunks[i].first * links_.binCount(),
                              chunks[i].count * rowBytes(settings_));
@@ -217,6 +227,7 @@ void ElementPasses::readInMemory(frame::PassBuilder& pass) const {
 }
 
 frame::SlotHandle ElementPasses::readLinks(frame::PassBuilder& pass) const {
+  linksRead_ = true;
   for (const LinkChunk& chunk : chunks) pass.read(chunk.links, Access::storageLoad, "links");
   return pass.slot("Links");
 }

@@ -27,7 +27,8 @@ struct ElementSettings {
   std::string_view technique;
 };
 
-/// Holds the links of leaves [first, first + count), as many as one storage block holds.
+/// Holds the links of leaves [first, first + count), as many as one storage block holds and one row of work
+/// groups takes.
 struct LinkChunk {
   frame::BufferHandle links;
   uint32_t first = 0, count = 0;
@@ -116,6 +117,7 @@ class ElementPasses {
   gpu::Buffer groupBuffer_, leafBuffer_, cornerBuffer_, directions_, materialBuffer_, rootBuffer_,
       firstTriangleBuffer_;
   bool software_ = false;
+  mutable bool linksRead_ = false;  ///< by shaders; else those that the processor made stay in its memory
   frame::BufferHandle roots_, firstTriangles_;
   std::deque<gpu::Buffer> linkBuffers_;  ///< the graph keeps their addresses
 };

@@ -137,6 +137,10 @@ class ImplicitVisibility : public Technique {
   frame::TextureHandle addPasses(frame::FrameGraph& graph, const TechniqueInputs& inputs,
                                  const TermRequest& request) override {
     const PassRequest r{graph, inputs, request.target};
+    if (request.term == Term::environment && !shines(inputs.scene.environment)) {
+      graph.leaveOut("environment light", info.name, "the environment is black");
+      return request.target;
+    }
     const bool sky = request.term == Term::environment || includesEnvironment(inputs, request);
     if (request.term == Term::indirect && request.lights.empty() && !sky) {
       graph.leaveOut("indirect light", info.name, "the scene has no light");
@@ -160,13 +164,20 @@ class ImplicitVisibility : public Technique {
 
   bool update(const scene::Pose& pose) override { return elements_ && !elements_->fits(pose); }
 
-  /// Returns whether the environment is a light of the request: unless another one was chosen, or lights
-  /// stand for it, which would count it twice.
+  /// Returns whether any light comes from the environment.
+  static bool shines(const scene::Environment& environment) {
+    return environment.scale != 0 &&
+           std::ranges::any_of(environment.texels, [](const glm::vec3& t) { return t != glm::vec3(0); });
+  }
+
+  /// Returns whether the environment is a light of the request: unless it is black, another one was chosen,
+  /// or lights stand for it, which would count it twice.
   static bool includesEnvironment(const TechniqueInputs& inputs, const TermRequest& request) {
     const auto standsForIt = [&](uint32_t light) {
       return (inputs.pose.lights[light].flags & glsl::light_flag_environment) != 0;
     };
-    return inputs.scene.environment && !request.chosen && std::ranges::none_of(request.lights, standsForIt);
+    return shines(inputs.scene.environment) && !request.chosen &&
+           std::ranges::none_of(request.lights, standsForIt);
   }
 
   void begin(frame::FrameGraph& graph, const TechniqueInputs& inputs) {

@@ -90,12 +90,19 @@ const LightPasses::Seen& LightPasses::seen(const PassRequest& r, std::span<const
   return s;
 }
 
+std::span<const uint32_t> LightPasses::firstBatch(std::span<const uint32_t> lights) const {
+  for (const Seen& known : seen_) {
+    const auto batch = lights.first(std::min(known.lights.size(), lights.size()));
+    if (!batch.empty() && std::ranges::equal(known.lights, batch)) return batch;
+  }
+  return lights.first(std::min(kLightBatch, lights.size()));
+}
+
 LightPasses::Sent LightPasses::directLight(const PassRequest& r, std::span<const uint32_t> lights, bool sky) {
-  // In the batches in which pictures ask for V, so that both share it.
   Sent sent;
   size_t first = 0;
   do {
-    const auto batch = lights.subspan(first, std::min(kLightBatch, lights.size() - first));
+    const auto batch = firstBatch(lights.subspan(first));
     first += batch.size();
     const bool last = first == lights.size();
     sent = addDirectLight(r, batch, sky && last, sent.first, last);

@@ -45,6 +45,9 @@ class LightPasses {
   using Sent = std::pair<frame::BufferHandle, frame::BufferHandle>;
 
   const Seen& seen(const PassRequest& r, std::span<const uint32_t> lights);
+  /// Returns the first of `lights`, as many as a picture has asked V for together, so that both share it;
+  /// where it has not, a batch.
+  std::span<const uint32_t> firstBatch(std::span<const uint32_t> lights) const;
   /// Returns what leaves reflect of lights and environment.
   Sent directLight(const PassRequest& r, std::span<const uint32_t> lights, bool sky);
   /// Adds what leaves reflect of some lights and, if `sky`, of the environment to `before`; empty: nothing

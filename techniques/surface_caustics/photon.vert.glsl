@@ -8,8 +8,6 @@
 #if CAUSTIC_MAP
 #include "techniques/surface_caustics/caustic_map.glsl"
 
-layout(std430) readonly buffer Layers { CausticLayer layers[]; };
-uniform int layer_count;  // of the rays
 uniform int map_layer;
 #endif
 
@@ -36,10 +34,6 @@ struct Target {
 };
 
 #if CAUSTIC_MAP
-bool in_target(int index) {
-  ShadowLight maps = scene_lights[int(layers[index / (buffer_size * buffer_size) % layer_count].light)];
-  return uint(map_layer) - maps.first_layer < shadow_face_count(maps.faces);
-}
 Target target_at(vec3 place) {
   ShadowView view = scene_views[map_layer];
   float across = shadow_footprint(view, shadow_view_depth(view, place));
@@ -48,7 +42,6 @@ Target target_at(vec3 place) {
 }
 vec4 target_clip(vec3 place) { return shadow_clip(scene_views[map_layer], place); }
 #else
-bool in_target(int index) { return true; }
 Target target_at(vec3 place) {
   float depth = -(frame.world_to_view * vec4(place, 1.0)).z;
   return Target(normalize(place - frame.camera_position.xyz), depth * frame.view_ray_dx.xyz, depth * frame.view_ray_dy.xyz);
@@ -99,7 +92,6 @@ void main() {
   incidence = vec4(ray.direction, 0.0);
   kernel_x = vec3(0.0);
   kernel_y = vec3(0.0);
-  if (!in_target(index)) return;
   vec3 place = ray.start + ray.segment_length * ray.direction;
   vec3 normal = octahedral_decode(unpackSnorm2x16(ray.normal));
   incidence.w = -dot(normal, ray.direction);

@@ -58,7 +58,7 @@ constexpr StressCase kStress[] = {
 struct Photons {
   caustics::CausticRays rays;
   caustics::RayLists lists;
-  frame::BufferHandle frame;
+  frame::BufferHandle frame, mediumAlone;
   scene::MediumInput medium;
   float kernel, beamCosine;
   frame::ProgramHandle program = {};
@@ -70,14 +70,18 @@ struct Photons {
             graph, made,
             {.technique = technique,
              .program = {.files = {"techniques/surface_caustics/photon_kinds.comp.glsl"}, .defines = {}},
-             .kinds = {{{.vertices = 3}}}})),
+             .kinds = {{{.vertices = 3}}},
+             .kept = true})),
         frame(inputs.handles.frame),
+        mediumAlone(inputs.handles.medium),
         medium(inputs.handles, inputs.parameters.integer("medium_steps")),
         kernel(inputs.parameters.real("kernel")),
         beamCosine(inputs.parameters.real("beam_cosine")) {}
 
+  /// Of a map nothing depends on the camera.
   void declare(frame::PassBuilder& pass, bool map) {
-    pass.read(frame, Access::uniformBuffer, "FrameBlock", "camera, medium")
+    pass.read(map ? mediumAlone : frame, Access::uniformBuffer, "FrameBlock",
+              map ? "medium" : "camera, medium")
         .read(rays.rays, Access::storageLoad, "Rays", "photons");
     caustics::declareRayLists(pass, lists);
     gpu::ProgramDesc desc{.files = {"techniques/surface_caustics/photon.vert.glsl",
@@ -126,15 +130,43 @@ class SurfaceCaustics : public Technique {
     return irradiance;
   }
 
+  /// What draws the photons of each layer of the caustic maps: those of its light alone.
+  static frame::BufferHandle addMapDraws(frame::FrameGraph& graph, const Photons& photons) {
+    const caustics::CausticRays& rays = photons.rays;
+    frame::PassBuilder pass = graph.addPass("caustic map draws", info.name);
+    pass.read(photons.lists.indices, Access::storageLoad, "RayIndices", "photons in order of their rays")
+        .read(photons.lists.draws, Access::storageLoad, "RayDraws", "how many there are")
+        .read(rays.layerLights, Access::storageLoad, "Layers", "light of each layer of rays")
+        .read(rays.scene.lights, Access::storageLoad, "SceneLights", "layers of each light")
+        .cacheable();
+    const int64_t commands = int64_t{rays.scene.layers} * rays.layers * rays.paths;
+    const frame::BufferHandle draws = pass.write(
+        graph.createBuffer("caustic map draws", {static_cast<size_t>(commands) * sizeof(glsl::RayDraw)}),
+        Access::storageStore, "MapDraws", "photons of each layer's light");
+    const auto program =
+        pass.program({.files = {"techniques/surface_caustics/map_draws.comp.glsl"}, .defines = {}});
+    pass.execute([program, rays, commands](frame::PassContext& context) {
+      gpu::Program& kernel = context.use(program);
+      kernel.set("map_layers", static_cast<unsigned>(rays.scene.layers));
+      kernel.set("layer_count", static_cast<unsigned>(rays.layers));
+      kernel.set("path_count", static_cast<unsigned>(rays.paths));
+      kernel.set("layer_rays", static_cast<unsigned>(rays.size * rays.size));
+      context.dispatchRows((commands + 63) / 64);
+    });
+    return draws;
+  }
+
   /// The same by way of caustic maps: irradiance on what the lights' scene maps show, texel by texel.
   frame::TextureHandle addMaps(frame::FrameGraph& graph, Photons photons) {
     const caustics::CausticRays& rays = photons.rays;
+    const frame::BufferHandle draws = addMapDraws(graph, photons);
     frame::PassBuilder pass = graph.addPass("caustic map", info.name);
     photons.declare(pass, true);
-    pass.read(rays.layerLights, Access::storageLoad, "Layers", "light of each layer of rays")
+    pass.read(draws, Access::indirectBuffer, "photons of each layer's light")
         .read(rays.scene.views, Access::storageLoad, "SceneViews", "projections of the maps")
         .read(rays.scene.lights, Access::storageLoad, "SceneLights", "layers of each light")
-        .read(rays.scene.depth, Access::sampled, "scene_depth", "receivers");
+        .read(rays.scene.depth, Access::sampled, "scene_depth", "receivers")
+        .cacheable();
     const frame::TextureHandle maps =
         pass.write(graph.createTexture("caustic maps", {.target = GL_TEXTURE_2D_ARRAY,
                                                         .format = GL_RGBA32F,
@@ -143,13 +175,14 @@ class SurfaceCaustics : public Technique {
                                                         .layers = rays.scene.layers}),
                    Access::colourAttachment, "flux per area");
     pass.execute([=, this](frame::PassContext& context) {
-      const caustics::CausticRays& splatted = photons.rays;
-      for (int layer = 0; layer < splatted.scene.layers; ++layer) {
+      const gl::Functions& gl = context.gl();
+      gl.BindBuffer(GL_DRAW_INDIRECT_BUFFER, context.buffer(draws).id());
+      const int runs = photons.rays.layers * photons.rays.paths;
+      for (int layer = 0; layer < photons.rays.scene.layers; ++layer) {
         context.bindFramebuffer({{maps, 0, layer}});
-        gpu::Program& splats = photons.begin(context, empty_);
-        splats.set("layer_count", splatted.layers);
-        splats.set("map_layer", layer);
-        photons.draw(context);
+        photons.begin(context, empty_).set("map_layer", layer);
+        const size_t first = static_cast<size_t>(layer) * static_cast<size_t>(runs) * sizeof(glsl::RayDraw);
+        gl.MultiDrawArraysIndirect(GL_TRIANGLES, reinterpret_cast<const void*>(first), runs, 0);
       }
     });
     return maps;

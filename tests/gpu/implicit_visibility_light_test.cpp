@@ -1,6 +1,8 @@
 // Which light implicit visibility reflects, and how much of it: lights that are chosen, skies, suns, media.
+#include <algorithm>
 #include <cmath>
 #include <cstdio>
+#include <string>
 #include <vector>
 
 #include "core/shading/environment_decomposition.h"
@@ -47,6 +49,13 @@ class ImplicitVisibilityLightTest : public RenderTest {
     use.terms = terms;
     return use;
   }
+  /// Returns how many passes look up V of lights in bins.
+  static size_t lookUps(const render::Renderer& renderer) {
+    return static_cast<size_t>(std::ranges::count_if(renderer.explain(), [](const frame::PassReport& pass) {
+      return pass.technique == "implicit_visibility" && pass.name.starts_with("light visibility") &&
+             pass.state != frame::PassState::leftOut;
+    }));
+  }
   static Image bounce(const scene::Scene& scene, int light, TermSet terms = kAnswerableTerms) {
     render::Renderer renderer(device(), scene);
     return picture(renderer, settings(64, 48, Term::indirect, {coarse(terms)}, light), camera());
@@ -62,6 +71,29 @@ TEST_F(ImplicitVisibilityLightTest, AChosenLightBouncesWithoutTheEnvironment) {
   EXPECT_EQ(rmse(chosen, alone), 0);
   EXPECT_GT(mean(alone), 0);
   EXPECT_GT(mean(all), 2 * mean(alone));
+}
+
+/// Neither a bin looks at it, nor are there elements where it is the only light.
+TEST_F(ImplicitVisibilityLightTest, ABlackEnvironmentCostsNothing) {
+  const scene::Scene lit = corner();
+  scene::Scene night = lit;
+  night.environment = uniformSky(1);
+  night.environment.scale = 0;
+  EXPECT_EQ(rmse(bounce(night, -1), bounce(lit, -1)), 0);
+  const auto passesOf = [&](const scene::Scene& scene) {
+    render::Renderer renderer(device(), scene);
+    picture(renderer, settings(64, 48, Term::final, {coarse(Term::indirect | Term::environment)}), camera());
+    std::vector<std::string> names;
+    for (const frame::PassReport& pass : renderer.explain())
+      if (pass.technique == "implicit_visibility" && pass.state != frame::PassState::leftOut)
+        names.push_back(pass.name);
+    return names;
+  };
+  EXPECT_EQ(passesOf(night), passesOf(lit));
+  EXPECT_FALSE(passesOf(lit).empty());
+  scene::Scene dark = night;
+  dark.nodes.back().light = scene::kNone;
+  EXPECT_TRUE(passesOf(dark).empty());
 }
 
 /// Whether or not the technique answers the environment's own light as well. Lights and map differ in V,
@@ -235,11 +267,21 @@ TEST_F(ImplicitVisibilityLightTest, BinsAreLookedUpOnceForEachOfManyLights) {
   const Image wanted = picture(single, settings(64, 48, Term::final, {coarse()}), camera());
   const Image image = picture(renderer, settings(64, 48, Term::final, {coarse()}), camera());
   EXPECT_LT(rmse(image, wanted), 1e-5 * mean(wanted));
-  int lookedUp = 0;
-  for (const frame::PassReport& pass : renderer.explain())
-    lookedUp += pass.technique == "implicit_visibility" && pass.name.starts_with("light visibility") &&
-                pass.state != frame::PassState::leftOut;
-  EXPECT_EQ(lookedUp, 2);
+  EXPECT_EQ(lookUps(renderer), 2u);
+}
+
+/// Core asks for V of the environment's lights apart from that of others where it sums them up by themselves.
+TEST_F(ImplicitVisibilityLightTest, BinsAreLookedUpOnceWhereTheEnvironmentsLightsAreApart) {
+  scene::Scene scene = corner();
+  scene.environment = uniformSky(1);
+  scene.environment.lights =
+      shading::decomposeEnvironment(scene.environment, {.threshold = 0.02, .resolution = 24}).lights;
+  scene.environment.shadowedByRatio = true;
+  const size_t ofSky = scene.environment.lights.size();
+  ASSERT_GT(ofSky, 0u);
+  render::Renderer renderer(device(), scene);
+  picture(renderer, settings(64, 48, Term::final, {coarse(Term::visibility | Term::indirect)}), camera());
+  EXPECT_EQ(lookUps(renderer), 1 + (ofSky + 7) / 8);
 }
 
 class ImplicitVisibilitySunTest : public test::BallTest {};

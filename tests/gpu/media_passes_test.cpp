@@ -1,12 +1,41 @@
 // The passes of media and caustics: which run, which are left out where there is nothing for them, and which
 // keep what they have.
+#include <gmock/gmock.h>
+
+#include <string>
+#include <utility>
+#include <vector>
+
 #include "tests/gpu/media_harness.h"
 #include "tests/support/environment_maps.h"
+#include "tests/support/scene_nodes.h"
 
 namespace limn {
 namespace {
 
-using MediaPassesTest = MediaHarness;
+class MediaPassesTest : public MediaHarness {
+ protected:
+  /// Of what the pass "caustic rays" writes.
+  static int64_t bytesOfRays(const render::Renderer& renderer) {
+    int64_t bytes = 0;
+    for (const auto& pass : renderer.explain())
+      for (const auto& access : pass.accesses)
+        if (pass.name == "caustic rays" && access.write) bytes += access.bytes;
+    return bytes;
+  }
+
+  /// The passes of `technique` that write geometric normals of specular objects.
+  static std::vector<std::string> passesWithGeometricNormals(const render::Renderer& renderer,
+                                                             const std::string& technique) {
+    std::vector<std::string> names;
+    for (const auto& pass : renderer.explain())
+      for (const auto& access : pass.accesses)
+        if (pass.technique == technique && access.write &&
+            access.resource.starts_with("specular geometric normal"))
+          names.push_back(pass.name);
+    return names;
+  }
+};
 
 TEST_F(MediaPassesTest, AMediumThatScattersNothingCostsNothing) {
   scene::Scene scene = asset("glass_sphere");
@@ -67,22 +96,65 @@ TEST_F(MediaPassesTest, WhereNothingIsTransparentNoRefractionIsTraced) {
     return picture(renderer,
                    settings(width, height, Term::media, {technique("volume_caustics", {{"paths", paths}})}));
   };
-  const auto bytesOfRays = [&] {
-    int64_t bytes = 0;
-    for (const auto& pass : renderer.explain())
-      for (const auto& access : pass.accesses)
-        if (pass.name == "caustic rays" && access.write) bytes += access.bytes;
-    return bytes;
-  };
   const Image both = lines("both");
   EXPECT_EQ(stateOf(renderer, "volume_caustics", "refracted rays"), "no specular surface lets light through");
-  const int64_t bytes = bytesOfRays();
+  const int64_t bytes = bytesOfRays(renderer);
   EXPECT_TRUE(sameBits(both, lines("reflection")));
   EXPECT_EQ(stateOf(renderer, "volume_caustics", "refracted rays"), "unknown");
   EXPECT_GT(bytes, 0);
-  EXPECT_EQ(bytes, bytesOfRays());
+  EXPECT_EQ(bytes, bytesOfRays(renderer));
   expectWithin(lines("refraction"), 0, 0);
   EXPECT_EQ(stateOf(renderer, "volume_caustics", "caustic lines"), "no specular surface lets light through");
+}
+
+/// A spot beside the ball sends it nothing while it looks away. As soon as it looks at the ball, the picture
+/// is that of a renderer that has never seen it look away, and when it looks away again, what it was before.
+TEST_F(MediaPassesTest, LightsThatReachNoSpecularSurfaceHaveNoRays) {
+  const scene::Scene one = asset("glass_sphere");
+  scene::Scene two = one;
+  test::shine(two, test::lamp(glsl::light_spot, 3), {-1.5f, 1.5f, 0}, {-1, 0, 0});
+  const auto look = [&](render::Renderer& renderer, float x) {
+    two.nodes.back().transform.rotation = glm::quatLookAt(glm::vec3(x, 0, 0), glm::vec3(0, 1, 0));
+    renderer.setTime(0);
+    renderer.render();
+    return renderer.read();
+  };
+  // With one path a ray's number, which spreads lines over pixels, does not depend on later lights.
+  render::Settings asked =
+      settings(width, height, Term::media, {technique("volume_caustics", {{"paths", "refraction"}})});
+  asked.dynamic = false;
+  render::Renderer alone(device(), one), renderer(device(), two);
+  const Image first = picture(alone, asked);
+  ASSERT_GT(bytesOfRays(alone), 0);
+  EXPECT_TRUE(sameBits(picture(renderer, asked), first));
+  EXPECT_EQ(bytesOfRays(renderer), bytesOfRays(alone));
+  EXPECT_EQ(stateOf(renderer, "caustics", "rays of light " + renderer.pose().lightNames.at(1)),
+            "it reaches no specular surface");
+  const Image turned = look(renderer, 1);
+  EXPECT_EQ(bytesOfRays(renderer), 2 * bytesOfRays(alone));
+  EXPECT_GT(mean(turned), mean(first));
+  render::Renderer fresh(device(), two);
+  EXPECT_TRUE(sameBits(turned, picture(fresh, asked)));
+  EXPECT_TRUE(sameBits(look(renderer, -1), first));
+}
+
+/// Each fragment would read the corners of its triangle for them.
+TEST_F(MediaPassesTest, GeometricNormalsOfSpecularObjectsAreMadeForThoseWhoReadThem) {
+  using testing::ElementsAre, testing::IsEmpty;
+  for (const auto& [name, refracts] : {std::pair("ring", false), std::pair("glass_sphere", true)}) {
+    SCOPED_TRACE(name);
+    const scene::Scene scene = asset(name);
+    render::Renderer renderer(device(), scene);
+    picture(renderer,
+            settings(8, 6, Term::final, {quick("surface_caustics"), quick("image_space_refraction")}));
+    EXPECT_EQ(stateOf(renderer, "image_space_refraction", "specular front"), "run");
+    EXPECT_THAT(passesWithGeometricNormals(renderer, "image_space_refraction"), IsEmpty());
+    const std::vector<std::string> ofRays = passesWithGeometricNormals(renderer, "caustics");
+    if (refracts)
+      EXPECT_THAT(ofRays, ElementsAre("specular front", "specular back"));
+    else
+      EXPECT_THAT(ofRays, ElementsAre("specular front"));
+  }
 }
 
 /// A software renderer needs no barriers: the list itself is what is checked.

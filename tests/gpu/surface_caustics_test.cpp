@@ -2,6 +2,8 @@
 #include <fmt/format.h>
 
 #include <cmath>
+#include <string>
+#include <vector>
 
 #include "core/scene/camera.h"
 #include "core/scene/material_model.h"
@@ -75,6 +77,44 @@ TEST_F(SurfaceCausticsTest, RaysAreKeptWhileOnlyTheCameraMoves) {
       ++kept;
     }
     EXPECT_EQ(kept, 1);
+  }
+}
+
+/// Which rays are photons, and what a map of the light holds of them, does not depend on who looks either.
+/// What is kept goes when light or glass moves.
+TEST_F(SurfaceCausticsTest, PhotonsAreListedAndMapsMadeOnceWhileOnlyTheCameraMoves) {
+  for (const bool map : {false, true}) {
+    SCOPED_TRACE(map ? "light" : "screen");
+    scene::Scene scene = asset("glass_sphere");
+    render::Renderer renderer(device(), scene);
+    render::Settings asked = settings(width, height, Term::caustic,
+                                      {technique("surface_caustics", {{"splat", map ? "light" : "screen"}})});
+    asked.dynamic = false;
+    picture(renderer, asked);
+    const scene::CameraPose above = scene::lookAt({0.6f, 4, 0.01f}, {0.6f, 0, 0}, 0.3f);
+    renderer.setCamera(above);
+    renderer.render();
+    const Image kept = renderer.read();
+    std::vector<std::string> cached;
+    for (const frame::PassReport& pass : renderer.explain())
+      if (pass.technique == "surface_caustics" && pass.state == frame::PassState::cached)
+        cached.push_back(pass.name);
+    std::vector<std::string> wanted{"ray kinds", "ray places", "ray lists"};
+    if (map) wanted.insert(wanted.end(), {"caustic map draws", "caustic map"});
+    EXPECT_EQ(cached, wanted);
+    render::Renderer fresh(device(), scene);
+    const Image first = picture(fresh, asked, above);
+    EXPECT_GT(mean(first), 0);
+    EXPECT_TRUE(sameBits(kept, first));
+
+    for (scene::Node& node : scene.nodes)
+      if (node.light != scene::kNone) node.transform.translation.x += 0.5f;
+    renderer.setTime(0);
+    renderer.render();
+    const Image moved = renderer.read();
+    EXPECT_FALSE(sameBits(moved, kept));
+    render::Renderer other(device(), scene);
+    EXPECT_TRUE(sameBits(moved, picture(other, asked, above)));
   }
 }
 
@@ -167,8 +207,8 @@ TEST_F(SurfaceCausticsTest, CausticMapsShowWhatPhotonsOnTheScreenDo) {
     const char* scene;
     double mean, rms;  ///< relative
   };
-  for (const auto& [name, ofMean, ofRms] :
-       {Bound{"glass_sphere", 0.01, 0.1}, Bound{"gem", 0.01, 0.1}, Bound{"ring", 0.05, 0.3}}) {
+  for (const auto& [name, ofMean, ofRms] : {Bound{"glass_sphere", 0.01, 0.1}, Bound{"gem", 0.01, 0.1},
+                                            Bound{"gem_4_lights", 0.01, 0.1}, Bound{"ring", 0.05, 0.3}}) {
     SCOPED_TRACE(name);
     scene::Scene scene = asset(name);
     scene.medium = {};

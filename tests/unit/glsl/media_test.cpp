@@ -230,6 +230,36 @@ TEST(Airlight, TheRangeOfAConeIsWhereItsFactorIsNotZero) {
   EXPECT_LT(light_cone_range(light, vec3(0), vec3(1, 0, 0)).x, -1e38f);
 }
 
+/// The same of the distance at which a light ends.
+TEST(Airlight, TheBallOfALightIsWhereItsRangeLetsLightPass) {
+  std::mt19937 random(8);
+  std::normal_distribution<float> normal;
+  const auto place = [&] { return vec3(normal(random), normal(random), normal(random)); };
+  int lit = 0;
+  for (int i = 0; i < 2000; ++i) {
+    Light light{};
+    light.type = i % 2 ? light_point : light_rectangle;
+    light.position = place();
+    light.range = 0.1f + 2 * float(i % 97) / 97;
+    const vec3 eye = 2.f * place(), w = normalize(place());
+    const vec2 range = light_ball_range(light, eye, w);
+    for (float t = -8; t < 8; t += 0.11f) {
+      const float distance = length(eye + t * w - vec3(light.position));
+      if (std::abs(distance - light.range) < 1e-4f) continue;
+      const bool passes = range_factor(light, distance) > 0;
+      EXPECT_EQ(range.x < t && t < range.y, passes) << i << " at " << t << ": " << range.x << " " << range.y;
+      lit += passes;
+    }
+  }
+  EXPECT_GT(lit, 3000);
+  Light light{};
+  light.range = 0;
+  EXPECT_LT(light_ball_range(light, vec3(0), vec3(1, 0, 0)).x, -1e38f);
+  light.type = light_directional;
+  light.range = 1;
+  EXPECT_LT(light_ball_range(light, vec3(0), vec3(1, 0, 0)).x, -1e38f);
+}
+
 /// Of an area light whose centre stands for all of it: on the axis of a disc of the same area, which has a
 /// closed form, the light is right far away and on the disc, and never more than (1 + sqrt(2)) / 2 times as
 /// much.
