@@ -74,7 +74,6 @@ class Sequence {
     settings.term = parseTerm(options.scene.term);
     settings.size = view_.size;
     settings.light = view_.light;
-    settings.channels = true;
     interfaces_ = render::interfacesOf(settings.term, techniques);
     bounces_ = options.bounces.value_or(render::bouncesOf(settings.term, techniques));
     renderer_.configure(settings);

@@ -43,7 +43,8 @@ std::vector<glm::mat4> placesOf(const scene::Pose& pose) {
 struct FrameHistoryService::Kept {
   /// What a slot holds.
   struct Slot {
-    uint32_t frame = 0;  ///< its index
+    uint32_t frame = 0;   ///< its index
+    uint32_t placed = 0;  ///< that of the first frame with the instances where they were
     glsl::HistoryFrame view{};
   };
   int frames = 0, parts = 0;
@@ -104,13 +105,20 @@ frame::TextureHandle FrameHistoryService::average(const GBuffer& gbuffer, frame:
   gpu::Device& device = scene_.device();
   if (frames < 2 || frames > kMostFrames)
     throw Error(fmt::format("history of {} frames: accepted are 2 to {}", frames, kMostFrames));
+  const auto instanceCount = static_cast<int>(scene_.instanceCount());
+  const size_t instanceBytes = static_cast<size_t>(instanceCount) * sizeof(glsl::Instance);
+  const auto bytes = static_cast<int64_t>(static_cast<size_t>(frames) * instanceBytes);
+  if (bytes > device.limits().maxStorageBlockBytes)
+    throw UsageError(fmt::format(
+        "history of {} frames: the places of {} instances take {} MiB, more than the {} MiB of a storage "
+        "buffer; ask for fewer frames",
+        frames, instanceCount, bytes >> 20, device.limits().maxStorageBlockBytes >> 20));
   Kept& kept = *kept_.emplace_back(std::make_unique<Kept>());
   gpu::TextureDesc desc = graph.desc(light);
   const glm::ivec2 size(desc.width, desc.height);
   kept.frames = frames;
   kept.parts = desc.layers;
   kept.moves = !scene_.scene().animations.empty() || !scene_.scene().dynamic.empty();
-  const auto instanceCount = static_cast<int>(scene_.instanceCount());
   desc.layers *= frames;
   kept.light = gpu::Texture(device, "light of frames", desc);
   desc.layers = frames;
@@ -119,8 +127,7 @@ frame::TextureHandle FrameHistoryService::average(const GBuffer& gbuffer, frame:
   kept.views = gpu::Buffer(device, "views of frames", sizeof(kept.found), gpu::BufferUse::updated);
   const frame::TextureHandle keptLight = graph.importTexture("light of frames", kept.light);
   const frame::TextureHandle keptSurfaces = graph.importTexture("surfaces of frames", kept.surfaces);
-  const size_t instanceBytes = static_cast<size_t>(instanceCount) * sizeof(glsl::Instance);
-  kept.instances = gpu::Buffer(device, "instances of frames", static_cast<size_t>(frames) * instanceBytes);
+  kept.instances = gpu::Buffer(device, "instances of frames", static_cast<size_t>(bytes));
   const frame::BufferHandle keptInstances = graph.importBuffer("instances of frames", kept.instances);
   const std::string parts = std::to_string(kept.parts);
 
@@ -166,10 +173,12 @@ frame::TextureHandle FrameHistoryService::average(const GBuffer& gbuffer, frame:
     const int slot = kept.slotOf(now.frame_index);
     context.use(keeping).set("slot", slot);
     context.dispatch(size.x, size.y, 1, kGroup, kGroup);
-    context.gl().CopyNamedBufferSubData(context.buffer(from).id(), context.buffer(copied).id(), 0,
-                                        static_cast<GLintptr>(static_cast<size_t>(slot) * instanceBytes),
-                                        static_cast<GLsizeiptr>(instanceBytes));
-    kept.slots.at(static_cast<size_t>(slot)) = {now.frame_index, viewOf(now)};
+    std::optional<Kept::Slot>& held = kept.slots.at(static_cast<size_t>(slot));
+    if (!held || held->placed != placed_)  // else the slot has them where they are
+      context.gl().CopyNamedBufferSubData(context.buffer(from).id(), context.buffer(copied).id(), 0,
+                                          static_cast<GLintptr>(static_cast<size_t>(slot) * instanceBytes),
+                                          static_cast<GLsizeiptr>(instanceBytes));
+    held = {now.frame_index, placed_, viewOf(now)};
   });
   return result;
 }

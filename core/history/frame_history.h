@@ -42,7 +42,7 @@ class LIMN_API FrameHistoryService : public FrameService {
   /// where nothing is lit. `light` is an RGBA32F array as large as the surfaces of `gbuffer`, of which rgb /
   /// a is the value and a is 0 where there is none, and below 1 in the first layer where it is of a part of
   /// the frame's samples. `technique` owns the passes. Throws Error where the frames exceed the device's
-  /// limits.
+  /// limits, UsageError where the places of the scene's instances in these frames do.
   frame::TextureHandle average(const GBuffer& gbuffer, frame::TextureHandle light, int frames,
                                std::string_view technique);
 

@@ -59,7 +59,14 @@ void Change::add(const Image& before, const Image& after, const std::vector<bool
   for (int y = 0; y < before.height(); ++y)
     for (int x = 0; x < before.width(); ++x) {
       if (!still[pixel++]) continue;
-      sum += static_cast<double>(std::abs(luminanceAt(after, b, x, y) - luminanceAt(before, a, x, y)));
+      const auto change =
+          static_cast<double>(std::abs(luminanceAt(after, b, x, y) - luminanceAt(before, a, x, y)));
+      if (!std::isfinite(change))
+        throw Error(
+            fmt::format("a sequence changes by no finite number in pixel {},{} from the upper left: a frame "
+                        "is not finite",
+                        x, y));
+      sum += change;
       count += 1;
     }
 }

@@ -18,7 +18,8 @@ struct LIMN_API Change {
   double sum = 0;    ///< of |after - before| in luminance
   double count = 0;  ///< of pixels
 
-  /// Adds the change over the pixels marked in `still`. Throws Error if a size differs.
+  /// Adds the change over the pixels marked in `still`. Throws Error if a size differs or a change is no
+  /// finite number.
   void add(const Image& before, const Image& after, const std::vector<bool>& still);
   double mean() const { return count > 0 ? sum / count : 0; }
 };

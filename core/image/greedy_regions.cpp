@@ -195,9 +195,9 @@ std::vector<Region> greedyRegions(const TexelGrid& grid, double threshold, Regio
   std::vector<Region> regions;
   while (const std::optional<Region> region = decomposition.next()) {
     if (static_cast<int>(regions.size()) == mostRegions)
-      throw UsageError(fmt::format(
-          "{}: the threshold {} asks for more than {} lights; a smaller threshold or resolution gives fewer",
-          what, threshold, mostRegions));
+      throw UsageError(
+          fmt::format("{}: the threshold {} asks for more than {} lights; a smaller one gives fewer", what,
+                      threshold, mostRegions));
     regions.push_back(*region);
   }
   decomposition.distributeRest(regions);

@@ -9,6 +9,7 @@
 
 #include "core/base/error.h"
 #include "core/scene/draw_instance.h"
+#include "core/scene/instance_areas.h"
 
 namespace limn::rays {
 
@@ -28,8 +29,28 @@ uint32_t capacityFor(uint32_t triangles) {
   return std::bit_ceil(std::max(triangles, kLeastCapacity));
 }
 
-/// Sets the rows of the matrix into the instance's space; false where there is none.
+/// What a matrix leaves of a body.
+enum class Extent : uint8_t {
+  thin,  ///< a line or a point
+  flat,
+  solid
+};
+
+Extent extentOf(const glm::mat4& objectToWorld) {
+  // Shares of the length. Floats round by 6e-8 of it, which the inverse of a body as high as this turns into
+  // 0.6 % of its other sides.
+  constexpr double kLeastWidth = 1e-7, kLeastHeight = 1e-5;
+  const glm::dmat3 m{glm::dmat4(objectToWorld)};
+  const double length2 = glm::dot(m[0], m[0]) + glm::dot(m[1], m[1]) + glm::dot(m[2], m[2]);
+  const double area = glm::length(scene::areaFactors(objectToWorld));
+  if (!(area > kLeastWidth * length2)) return Extent::thin;
+  const double volume = std::abs(glm::determinant(m));
+  return volume > kLeastHeight * area * std::sqrt(length2) ? Extent::solid : Extent::flat;
+}
+
+/// Sets the rows of the matrix into the instance's space; false where floats hold none.
 bool invert(const glm::mat4& objectToWorld, glsl::RayBody& body) {
+  if (extentOf(objectToWorld) != Extent::solid) return false;
   const glm::dmat4 inverse = glm::inverse(glm::dmat4(objectToWorld));
   for (int column = 0; column < 4; ++column)
     for (int row = 0; row < 3; ++row)
@@ -43,6 +64,11 @@ bool invert(const glm::mat4& objectToWorld, glsl::RayBody& body) {
   body.shift_y = shift.y;
   body.shift_z = shift.z;
   return true;
+}
+
+void toWorld(const scene::Primitive& primitive, const glm::mat4& place, std::vector<glm::vec3>& positions) {
+  positions.clear();
+  for (const glm::vec3& p : primitive.positions) positions.emplace_back(place * glm::vec4(p, 1));
 }
 
 template <class T>
@@ -76,7 +102,7 @@ const RayGeometry& RayGeometryService::request() {
   const FrameContext& building = context();
   if (requested_) return geometry_;
   bool changed = false;
-  if (!fits(building.pose) || !rebuildDynamic(building.pose, changed)) build(building.pose);
+  if (!fits(building.pose) || !rebuildMeshes(building.pose, changed)) build(building.pose);
   placeBodies(building.pose);
   importedNodes_ = building.graph.importBuffer("ray nodes", nodeBuffer_);
   importedTriangles_ = building.graph.importBuffer("ray triangles", triangleBuffer_);
@@ -94,7 +120,7 @@ const RayGeometry& RayGeometryService::request() {
 bool RayGeometryService::update(frame::FrameGraph& graph, const scene::Pose& pose) {
   if (!requested_) return false;
   bool changed = false;
-  if (!fits(pose) || !rebuildDynamic(pose, changed)) {
+  if (!fits(pose) || !rebuildMeshes(pose, changed)) {
     built_ = false;
     return true;
   }
@@ -107,20 +133,30 @@ bool RayGeometryService::update(frame::FrameGraph& graph, const scene::Pose& pos
   return false;
 }
 
-RayGeometryService::Source RayGeometryService::sourceOf(const scene::DrawInstance& instance) {
-  return {instance.node == scene::kNone, instance.mesh, instance.primitive, instance.deformed};
+/// What the instance is made of. Only one that moved may have become flat, or solid, since.
+RayGeometryService::Source RayGeometryService::sourceOf(const scene::Pose& pose, uint32_t draw) const {
+  const scene::DrawInstance& instance = pose.instances[draw];
+  Source source{instance.node == scene::kNone, instance.mesh, instance.primitive, instance.deformed};
+  if (built_ && matrices_[draw] == instance.objectToWorld)
+    source.flat = sources_[draw].flat;
+  else if (instance.deformed == scene::kNone && extentOf(instance.objectToWorld) == Extent::flat)
+    source.flat = static_cast<int>(draw);
+  return source;
 }
 
 /// Whether the pose consists of what was built.
 bool RayGeometryService::fits(const scene::Pose& pose) const {
-  return built_ && std::ranges::equal(pose.instances, sources_, {}, sourceOf);
+  if (!built_ || pose.instances.size() != sources_.size()) return false;
+  for (uint32_t draw = 0; draw < sources_.size(); ++draw)
+    if (sourceOf(pose, draw) != sources_[draw]) return false;
+  return true;
 }
 
 void RayGeometryService::checkSize(const scene::Pose& pose) const {
   std::map<Source, int64_t> triangles;
-  for (const scene::DrawInstance& instance : pose.instances) {
-    const Source source = sourceOf(instance);
-    const uint32_t count = triangleCount(scene::primitiveOf(scene_, pose, instance));
+  for (uint32_t draw = 0; draw < pose.instances.size(); ++draw) {
+    const Source source = sourceOf(pose, draw);
+    const uint32_t count = triangleCount(scene::primitiveOf(scene_, pose, pose.instances[draw]));
     triangles[source] = source.dynamic ? capacityFor(count) : count;
   }
   int64_t sum = 0;
@@ -149,9 +185,9 @@ void RayGeometryService::build(const scene::Pose& pose) {
               .coverage = CoverageTable(scene_)};
   // Deformed primitives come last, so that their triangles lie together.
   std::map<Source, uint32_t> known;
-  for (const scene::DrawInstance& instance : pose.instances) sources_.push_back(sourceOf(instance));
+  for (uint32_t draw = 0; draw < pose.instances.size(); ++draw) sources_.push_back(sourceOf(pose, draw));
   meshOf_.resize(sources_.size());
-  bool dynamic = false;
+  bool updated = false;
   for (const bool deformed : {false, true}) {
     if (deformed) firstMoving_ = static_cast<uint32_t>(parts.triangles.size() / 3);
     for (uint32_t draw = 0; draw < sources_.size(); ++draw) {
@@ -159,7 +195,7 @@ void RayGeometryService::build(const scene::Pose& pose) {
       const auto [found, fresh] = known.emplace(sources_[draw], static_cast<uint32_t>(meshes_.size()));
       if (fresh) meshes_.push_back(addMesh(parts, pose, draw));
       meshOf_[draw] = found->second;
-      dynamic = dynamic || sources_[draw].dynamic;
+      updated = updated || sources_[draw].dynamic || sources_[draw].flat != scene::kNone;
     }
   }
   moving_ = static_cast<uint32_t>(parts.triangles.size() / 3) - firstMoving_;
@@ -172,7 +208,7 @@ void RayGeometryService::build(const scene::Pose& pose) {
                     std::max(nodeBytes, maskBytes) >> 20, device_.limits().maxStorageBlockBytes >> 20));
   nodeBuffer_ = gpu::Buffer::of<glsl::RayNode>(device_, "ray nodes", parts.nodes, gpu::BufferUse::updated);
   triangleBuffer_ = gpu::Buffer::of<glm::vec4>(device_, "ray triangles", parts.triangles,
-                                               dynamic ? gpu::BufferUse::updated : gpu::BufferUse::fixed);
+                                               updated ? gpu::BufferUse::updated : gpu::BufferUse::fixed);
   bodyBuffer_ =
       gpu::Buffer(device_, "ray bodies", sources_.size() * sizeof(glsl::RayBody), gpu::BufferUse::updated);
   masked_ = maskBytes > 0;
@@ -187,6 +223,7 @@ void RayGeometryService::build(const scene::Pose& pose) {
   refitBuffer_ = gpu::Buffer::of<uint32_t>(device_, "nodes to refit", refits);
   bodies_.clear();
   topBoxes_.clear();
+  matrices_.assign(sources_.size(), glm::mat4(0));
   built_ = true;
 }
 
@@ -238,14 +275,16 @@ RayGeometryService::Mesh RayGeometryService::addMesh(Parts& parts, const scene::
     mesh.transparent = material.baseColour.a < material.alphaCutoff;
     mesh.built = pose.dynamic[static_cast<size_t>(instance.mesh)].primitive;
   }
+  const bool flat = source.flat != scene::kNone;
+  if (flat) mesh.place = instance.objectToWorld;
   if (mesh.triangles > 0) {
-    std::vector<glm::vec3> deformed, normals;
+    std::vector<glm::vec3> moved, normals;
     std::vector<glm::vec4> tangents;
     const bool moves = source.deformed != scene::kNone;
     if (moves)
-      scene::deform(primitive, pose.deformed[static_cast<size_t>(source.deformed)], deformed, normals,
-                    tangents);
-    const std::vector<glm::vec3>& positions = moves ? deformed : primitive.positions;
+      scene::deform(primitive, pose.deformed[static_cast<size_t>(source.deformed)], moved, normals, tangents);
+    if (flat) toWorld(primitive, mesh.place, moved);
+    const std::vector<glm::vec3>& positions = moves || flat ? moved : primitive.positions;
     buildTree(primitive, positions);
     appendTree(parts.nodes, parts.triangles, primitive, positions, mesh.root, mesh.firstTriangle);
     meshStack_ = std::max(meshStack_, builder_.stack());
@@ -253,7 +292,7 @@ RayGeometryService::Mesh RayGeometryService::addMesh(Parts& parts, const scene::
       mesh.coverage = parts.coverage.add(primitive, scene::materialOf(scene_, instance), builder_.order());
     if (moves) addMotion(parts, primitive, draw, mesh.root);
   }
-  if (source.dynamic) {
+  if (source.dynamic || flat) {
     parts.nodes.resize(mesh.root + mesh.capacity);
     parts.triangles.resize(3 * (size_t{mesh.firstTriangle} + mesh.capacity));
   }
@@ -275,26 +314,35 @@ void RayGeometryService::addMotion(Parts& parts, const scene::Primitive& primiti
       parts.refits[count - 1 - level].push_back(firstNode + node);
 }
 
-/// Brings primitives with new topology to the pose. Returns false where there is no room for one.
-bool RayGeometryService::rebuildDynamic(const scene::Pose& pose, bool& changed) {
+/// Brings primitives with new topology, and flat instances that moved, to the pose. Returns false where there
+/// is no room for one.
+bool RayGeometryService::rebuildMeshes(const scene::Pose& pose, bool& changed) {
   for (size_t draw = 0; draw < sources_.size(); ++draw) {
-    if (!sources_[draw].dynamic) continue;
+    const Source& source = sources_[draw];
     Mesh& mesh = meshes_[meshOf_[draw]];
-    const auto source = static_cast<size_t>(pose.instances[draw].mesh);
-    const std::shared_ptr<const scene::Primitive>& now = pose.dynamic[source].primitive;
-    if (mesh.built == now) continue;
-    const scene::Primitive& primitive = *now;
-    if (triangleCount(primitive) > mesh.capacity) return false;
-    mesh.built = now;
-    mesh.triangles = triangleCount(primitive);
+    const scene::DrawInstance& instance = pose.instances[draw];
+    const scene::Primitive& primitive = scene::primitiveOf(scene_, pose, instance);
+    if (source.dynamic) {
+      const std::shared_ptr<const scene::Primitive>& now =
+          pose.dynamic[static_cast<size_t>(instance.mesh)].primitive;
+      if (mesh.built == now) continue;
+      if (triangleCount(primitive) > mesh.capacity) return false;
+      mesh.built = now;
+      mesh.triangles = triangleCount(primitive);
+    } else {
+      if (source.flat == scene::kNone || mesh.place == instance.objectToWorld) continue;
+      if (mesh.coverage != glsl::ray_opaque) return false;  // masks lie in the order of the leaves
+      mesh.place = instance.objectToWorld;
+      toWorld(primitive, mesh.place, inWorld_);
+    }
     changed = true;
     if (mesh.triangles == 0) continue;
-    buildTree(primitive, primitive.positions);
+    const std::vector<glm::vec3>& positions = source.dynamic ? primitive.positions : inWorld_;
+    buildTree(primitive, positions);
     if (builder_.stack() > meshStack_) return false;
     dynamicNodes_.clear();
     dynamicTriangles_.clear();
-    appendTree(dynamicNodes_, dynamicTriangles_, primitive, primitive.positions, mesh.root,
-               mesh.firstTriangle);
+    appendTree(dynamicNodes_, dynamicTriangles_, primitive, positions, mesh.root, mesh.firstTriangle);
     nodeBuffer_.update(mesh.root * sizeof(glsl::RayNode), dynamicNodes_.data(),
                        dynamicNodes_.size() * sizeof(glsl::RayNode));
     triangleBuffer_.update(size_t{mesh.firstTriangle} * kTriangleBytes, dynamicTriangles_.data(),
@@ -305,18 +353,26 @@ bool RayGeometryService::rebuildDynamic(const scene::Pose& pose, bool& changed) 
 
 /// Brings the instances to the pose. Returns whether any of them moved.
 bool RayGeometryService::placeBodies(const scene::Pose& pose) {
+  const bool rigid = moving_ == 0 && pose.dynamic.empty();
+  if (rigid && !bodies_.empty() &&
+      std::ranges::equal(pose.instances, matrices_, {}, &scene::DrawInstance::objectToWorld))
+    return false;
   nextBodies_.resize(sources_.size());
   boxes_.clear();
   placed_.clear();
   for (uint32_t draw = 0; draw < sources_.size(); ++draw) {
     const scene::DrawInstance& instance = pose.instances[draw];
     const Mesh& mesh = meshes_[meshOf_[draw]];
+    matrices_[draw] = instance.objectToWorld;
     glsl::RayBody& body = nextBodies_[draw];
     body = {};
     body.root = mesh.root;
     body.coverage = mesh.coverage;
     body.first_triangle = mesh.firstTriangle;
-    if (mesh.triangles == 0 || mesh.transparent || !invert(instance.objectToWorld, body)) continue;
+    const bool flat = sources_[draw].flat != scene::kNone;
+    if (mesh.triangles == 0 || mesh.transparent ||
+        !invert(flat ? glm::mat4(1) : instance.objectToWorld, body))
+      continue;
     const scene::Bounds bounds = scene::instanceBounds(scene_, pose, instance);
     boxes_.push_back(glsl::ray_box_grown({bounds.low, bounds.high}));
     placed_.push_back(draw);

@@ -3,7 +3,9 @@
 //
 // What does not move is built once. Where instances move as a whole, the upper hierarchy alone is built
 // again, on the CPU. Skinned and morphed primitives keep the tree that they have at the start: passes fetch
-// their vertices and refit the boxes. Primitives with new topology (metaballs) are built on the CPU.
+// their vertices and refit the boxes. Primitives with new topology (metaballs) are built on the CPU, and so
+// are instances that their matrix makes flat wherever they move: floats hold no inverse of it, so that each
+// has a hierarchy of its own in world space.
 #pragma once
 
 #include <cstdint>
@@ -43,8 +45,9 @@ class LIMN_API RayGeometryService : public FrameService {
   RayGeometryService(gpu::Device& device, const scene::Scene& scene);
   ~RayGeometryService() override;
 
-  /// Returns the scene for rays. Instances whose matrix has no inverse are left out: they have no volume, and
-  /// rays meet none of them. Throws UsageError when the scene takes more memory than a storage buffer may.
+  /// Returns the scene for rays. Instances of which their matrix leaves a line or a point are left out, and
+  /// so are those with morph targets that it makes flat. Throws UsageError when the scene takes more memory
+  /// than a storage buffer may.
   const RayGeometry& request();
 
  private:
@@ -52,9 +55,10 @@ class LIMN_API RayGeometryService : public FrameService {
   struct Mesh {
     uint32_t root = 0, firstTriangle = 0;
     uint32_t triangles = 0;  ///< now
-    uint32_t capacity = 0;   ///< triangles that there is room for; as many nodes where it is dynamic
+    uint32_t capacity = 0;   ///< triangles that there is room for; as many nodes where it is dynamic or flat
     uint32_t coverage = glsl::ray_opaque;
     bool transparent = false;  ///< rays pass all of it
+    glm::mat4 place{1};  ///< of a flat instance: from its space to the world, in which the triangles lie
     /// Of a dynamic mesh: what is in the buffers. It is held, since sources fill again what nobody holds.
     std::shared_ptr<const scene::Primitive> built;
   };
@@ -62,6 +66,7 @@ class LIMN_API RayGeometryService : public FrameService {
   struct Source {
     bool dynamic = false;
     int mesh = 0, primitive = 0, deformed = 0;
+    int flat = scene::kNone;  ///< number of an instance that is flat
     auto operator<=>(const Source&) const = default;
   };
   /// Buffers while they are being made.
@@ -76,7 +81,7 @@ class LIMN_API RayGeometryService : public FrameService {
   void begin() override;
   bool update(frame::FrameGraph& graph, const scene::Pose& pose) override;
 
-  static Source sourceOf(const scene::DrawInstance& instance);
+  Source sourceOf(const scene::Pose& pose, uint32_t draw) const;
   bool fits(const scene::Pose& pose) const;
   void build(const scene::Pose& pose);
   void checkSize(const scene::Pose& pose) const;
@@ -86,15 +91,16 @@ class LIMN_API RayGeometryService : public FrameService {
   void appendTree(std::vector<glsl::RayNode>& nodes, std::vector<glm::vec4>& triangles,
                   const scene::Primitive& primitive, const std::vector<glm::vec3>& positions,
                   uint32_t firstNode, uint32_t firstTriangle) const;
-  bool rebuildDynamic(const scene::Pose& pose, bool& changed);
+  bool rebuildMeshes(const scene::Pose& pose, bool& changed);
   bool placeBodies(const scene::Pose& pose);
   void addRefits(const FrameContext& building);
 
   gpu::Device& device_;
   const scene::Scene& scene_;
   BvhBuilder builder_;
-  std::vector<Source> sources_;   ///< of each instance
-  std::vector<uint32_t> meshOf_;  ///< of each instance: index into meshes_
+  std::vector<Source> sources_;      ///< of each instance
+  std::vector<glm::mat4> matrices_;  ///< of each instance, in the last frame
+  std::vector<uint32_t> meshOf_;     ///< of each instance: index into meshes_
   std::vector<Mesh> meshes_;
   std::vector<uint32_t> refitCounts_;      ///< nodes of each level
   uint32_t topCapacity_ = 0;               ///< nodes before those of the meshes
@@ -103,6 +109,7 @@ class LIMN_API RayGeometryService : public FrameService {
   bool masked_ = false, built_ = false, requested_ = false;
   std::vector<glsl::RayNode> top_, dynamicNodes_;
   std::vector<glm::vec4> dynamicTriangles_;
+  std::vector<glm::vec3> inWorld_;  ///< positions of a flat instance
   std::vector<glsl::RayBody> bodies_, nextBodies_;
   std::vector<glsl::RayBox> topBoxes_;  ///< of the instances placed
   std::vector<glsl::RayBox> boxes_;     ///< of what is being built

@@ -116,7 +116,9 @@ void main() {
     vec4 values[PARTS];
     for (int part = 0; part < PARTS; ++part) values[part] = vec4(0.0);
     if (f.still == 0u || f.moved != 0u) {
-      find_place(f, place_before(place, f.slot), values);
+      PlaceBefore then = place;
+      if (f.moved != 0u) then = place_before(place, f.slot);
+      find_place(f, then, values);
     } else {
       for (int part = 0; part < PARTS; ++part)
         values[part] = texelFetch(history_light, ivec3(pixel, int(f.slot) * PARTS + part), 0);

@@ -1,4 +1,7 @@
 // What the frames that indirect light is averaged over promise.
+#include "core/history/frame_history.h"
+
+#include <fmt/format.h>
 #include <gmock/gmock.h>
 
 #include <algorithm>
@@ -235,6 +238,19 @@ TEST_F(FrameHistoryTest, FlatInstancesKeepTheirLight) {
   };
   const Image expected = seen(scene);
   EXPECT_LT(rmse(seen(animated), expected), 0.01 * mean(expected));
+}
+
+/// Shaders reach no further into a buffer than the device's largest storage block.
+TEST_F(FrameHistoryTest, PlacesOfInstancesLargerThanAStorageBufferAreRefused) {
+  constexpr int kMost = history::FrameHistoryService::kMostFrames;
+  const auto bytes = static_cast<size_t>(device().limits().maxStorageBlockBytes);
+  const size_t tooMany = bytes / (kMost * sizeof(glsl::Instance)) + 1;
+  if (tooMany > 100'000) GTEST_SKIP() << "the device takes " << tooMany << " instances";
+  scene::Scene scene = asset("cornell_box");
+  nodeOf(scene, "short_block").instances.resize(tooMany);
+  render::Renderer renderer(device(), scene);
+  EXPECT_THAT(errorOf([&] { still(renderer, gathered(64, kMost), renderer.pose().cameras.at(0)); }),
+              testing::HasSubstr(fmt::format("more than the {} MiB of a storage buffer", bytes >> 20)));
 }
 
 /// Metaballs change their topology, robots walk: light is finite and of the same amount.

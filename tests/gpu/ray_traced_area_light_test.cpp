@@ -2,6 +2,7 @@
 // in every frame.
 #include <algorithm>
 #include <cstdio>
+#include <optional>
 
 #include "core/reference/reference.h"
 #include "core/render/supersample.h"
@@ -164,6 +165,28 @@ TEST_F(RayTracedAreaLightTest, GeometryThatChangedWithoutRaysIsWhatAFreshStartSe
   EXPECT_EQ(values(now), values(at(fresh, 2)));
 }
 
+/// They have their triangles in world space: a block that is flat moves, rises to its height and falls again.
+TEST_F(RayTracedAreaLightTest, FlatInstancesThatMovedAreWhatAFreshStartSees) {
+  const glm::mat4 start = glm::translate(glm::mat4(1), {0, 0.5f, 0});
+  const glm::mat4 moved = glm::rotate(glm::translate(start, {-0.4f, 0, -0.2f}), 0.3f, {0, 0, 1});
+  const glm::vec3 flat(1, 0, 1), high(1);
+  scene::Scene scene = asset("cornell_box");
+  std::optional<glm::mat4>& place = std::ranges::find(scene.nodes, "short_block", &scene::Node::name)->placed;
+  render::Renderer renderer(device(), scene);
+  renderer.configure(rays(2));
+  std::vector<float> before;
+  for (const glm::mat4& now :
+       {glm::scale(start, flat), glm::scale(moved, flat), glm::scale(moved, high), glm::scale(start, flat)}) {
+    place = now;
+    render::Renderer fresh(device(), scene);
+    fresh.configure(rays(2));
+    const std::vector<float> seen = values(at(renderer, 0));
+    EXPECT_EQ(seen, values(at(fresh, 0)));
+    EXPECT_NE(seen, before);
+    before = seen;
+  }
+}
+
 TEST_F(RayTracedAreaLightTest, FramesOfWhatStandsStillAreAlike) {
   const scene::Scene scene = asset("robot");
   render::Renderer renderer(device(), scene);
@@ -199,6 +222,43 @@ TEST_F(RayClearanceTest, LeavesCloseToTheCameraShadeTheirFloorFarFromTheOrigin) 
     }
   }
   EXPECT_GT(below, 100);
+}
+
+/// Balls that a scale between two turns makes discs. What rounds their matrices looks like an inverse.
+TEST_F(RayClearanceTest, FlatInstancesHideWhatDiscsHide) {
+  using glm::vec3;
+  const vec3 lamp(0, 6, 0), centre(0, 1.5f, 0);
+  const glm::mat4 tilt =
+      glm::rotate(glm::translate(glm::mat4(1), centre), 0.35f, glm::normalize(vec3(1, 0.3f, 0.2f)));
+  const glm::mat4 turn = glm::rotate(glm::mat4(1), 1.34f, glm::normalize(vec3(0.3f, 0.7f, 0.5f)));
+  const vec3 normal(tilt[1]);
+  for (const float height : {0.f, 1e-8f, 1e-7f, 1e-6f, 1e-5f, 1e-4f}) {
+    SCOPED_TRACE(height);
+    scene::Scene scene;
+    scene::Pose pose;
+    test::addMesh(scene, test::floorPrimitive(4, test::addMaterial(scene)));
+    test::addMesh(scene, test::spherePrimitive(1, 0));
+    test::addInstance(scene, pose, 0);
+    test::addInstance(scene, pose, 1, glm::scale(tilt, {1, height, 1}) * turn);
+    test::addLight(pose, test::pointLight(lamp));
+    const scene::CameraPose camera = scene::lookAt({0, 4, 7}, {0, 1, 0}, 0.8f);
+    const test::Answer v = visibility("ray_traced_area_light", {{"filter", "none"}}, scene, pose, camera);
+    int hidden = 0, lit = 0;
+    for (int y = 0; y < side; ++y) {
+      for (int x = 0; x < side; ++x) {
+        if (v.instance[static_cast<size_t>(y * side + x)] != 0) continue;
+        const vec3 p = positionOf(v, camera, pose.bounds, x, y);
+        const vec3 ray = lamp - p;
+        const vec3 met = p + glm::dot(normal, centre - p) / glm::dot(normal, ray) * ray;
+        const float radius = glm::distance(met, centre);
+        if (std::abs(radius - 1) < 0.03f) continue;
+        (radius < 1 ? hidden : lit) += 1;
+        ASSERT_EQ(v.at(0, x, y), radius < 1 ? 0 : 1) << p.x << " " << p.z;
+      }
+    }
+    EXPECT_GT(hidden, 300);
+    EXPECT_GT(lit, 3000);
+  }
 }
 
 /// Of a disc that rises by a tenth of its diameter above the floor, all tries of many pixels miss what

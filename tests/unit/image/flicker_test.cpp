@@ -3,6 +3,8 @@
 
 #include <gtest/gtest.h>
 
+#include <limits>
+
 #include "core/base/error.h"
 
 namespace limn {
@@ -40,6 +42,23 @@ TEST(Flicker, CountsSurfacesThatStandStill) {
 TEST(Flicker, NoiseSubtractsInSquares) {
   EXPECT_DOUBLE_EQ(withoutNoise(5, 4), 3);
   EXPECT_EQ(withoutNoise(3, 4), 0);
+}
+
+/// No number is above a bound that is asked for. What does not stand still does not count.
+TEST(Flicker, FramesThatAreNotFiniteAreRefused) {
+  for (const float bad : {std::numeric_limits<float>::quiet_NaN(), std::numeric_limits<float>::infinity()}) {
+    Image broken = frame(1);
+    broken.at(2, 1, 1) = bad;
+    std::vector<bool> still(8, true);
+    Change change;
+    EXPECT_THROW(change.add(frame(1), broken, still), Error);
+    EXPECT_THROW(change.add(broken, broken, still), Error);
+    still[6] = false;
+    Change others;
+    others.add(frame(1), broken, still);
+    EXPECT_EQ(others.mean(), 0);
+    EXPECT_EQ(others.count, 7);
+  }
 }
 
 TEST(Flicker, FramesOfDifferentSizesAreRefused) {
