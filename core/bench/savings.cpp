@@ -59,7 +59,7 @@ std::vector<Comparison> comparisons(const Settings& asked) {
     all.push_back({{.name = name, .how = how, .exact = true}, forced, plain});
   };
   force(Saving::darkLights, "dark lights", "a light emits nothing");
-  force(Saving::environment, "environment light", "the scene has no environment");
+  force(Saving::environment, "environment light", "the scene has no environment, or a black one");
   force(Saving::culling, "culled instances", "their bounds lie outside what a view sees");
 
   Settings kept = plain;

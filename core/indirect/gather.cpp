@@ -8,7 +8,7 @@
 #include "core/frame/array_block.h"
 #include "core/gpu_scene/gpu_scene.h"
 #include "core/gpu_scene/surface_input.h"
-#include "core/scene/scene.h"
+#include "core/scene/draw_instance.h"
 #include "glsl/indirect/gather.glsl"
 #include "glsl/materials/material_model.glsl"
 
@@ -30,6 +30,15 @@ constexpr uint32_t kEntryAlone = 1u << glsl::model_entry;
 
 bool bounded(const GatherSettings& settings) {
   return settings.clamp > 0 || settings.bound == Bound::patch;
+}
+
+/// Whether no surface that takes light has a specular part.
+bool litAreLambertian(const TechniqueInputs& inputs) {
+  const auto isLambertian = [&](const scene::DrawInstance& drawn) {
+    const scene::Material& material = scene::materialOf(inputs.scene, drawn);
+    return material.lambertian() || material.specularSurface();
+  };
+  return inputs.handles.modelKinds == 0 && std::ranges::all_of(inputs.pose.instances, isLambertian);
 }
 
 }  // namespace
@@ -67,8 +76,7 @@ Gather::Gather(frame::FrameGraph& graph, const TechniqueInputs& inputs, std::str
       technique_(technique),
       lights_(lights),
       settings_(settings),
-      lambertian_(inputs.handles.modelKinds == 0 &&
-                  std::ranges::all_of(inputs.scene.materials, &scene::Material::lambertian)),
+      lambertian_(litAreLambertian(inputs)),
       specular_(!lambertian_ && inputs.handles.modelKinds != kEntryAlone),
       residual_(settings.compensation && bounded(settings)),
       gbuffer_(inputs.gbuffer),

@@ -1,6 +1,8 @@
 // The frame graph of one picture: who answers which of its terms, and in which order their passes run.
 #include <fmt/format.h>
 
+#include <algorithm>
+
 #include "core/base/error.h"
 #include "core/render/private/implementation.h"
 #include "core/technique/bound.h"
@@ -9,6 +11,15 @@
 #include "glsl/materials/material_model.glsl"
 
 namespace limn::render {
+
+namespace {
+
+bool isBlack(const scene::Environment& environment) {
+  const auto black = [](const glm::vec3& texel) { return texel == glm::vec3(0); };
+  return environment.scale == 0 || std::ranges::all_of(environment.texels, black);
+}
+
+}  // namespace
 
 void Renderer::Implementation::build() {
   noteEmitting();
@@ -40,7 +51,6 @@ void Renderer::Implementation::build() {
       graph->output(kept);
   addInspector();
   graph->prepare(device, shaders, pool, compileProgress);
-  pool.trim();
 }
 
 void Renderer::Implementation::mountTechnique(const TechniquePlugin& plugin) {
@@ -169,9 +179,12 @@ void Renderer::Implementation::addDirect(std::span<Lighting> lightings, std::spa
 
 void Renderer::Implementation::addEnvironment(std::span<Lighting> lightings) {
   const char* why = nullptr;
-  if (!scene.environment && !forced(Saving::environment)) why = "no environment";
-  if (scene.environment && settings.light >= 0) why = "another light was chosen";
   Use* use = answering(Term::environment);
+  if (!forced(Saving::environment)) {
+    if (!scene.environment) why = "no environment";
+    if (scene.environment && !use && isBlack(scene.environment)) why = "the environment is black";
+  }
+  if (scene.environment && settings.light >= 0) why = "another light was chosen";
   if (!why && !use && !scene.environment.lights.empty()) why = "lights stand for it";
   if (why) return graph->leaveOut("environment light", "core", why);
   for (Lighting& lit : lightings)

@@ -10,7 +10,9 @@
 namespace limn::scene {
 
 Environment loadEnvironment(const std::filesystem::path& file, std::vector<std::string>& warnings) {
-  const std::string extension = file.extension().string();
+  std::string extension = file.extension().string();
+  for (char& c : extension)  // other systems write SKY.HDR
+    if (c >= 'A' && c <= 'Z') c = static_cast<char>(c - 'A' + 'a');
   if (extension != ".exr" && extension != ".hdr")
     throw Error(fmt::format("{}: an environment is an equirectangular .exr or .hdr file", file.string()));
   const Image image = readImage(file);

@@ -216,8 +216,8 @@ EnvironmentDecomposition decomposeEnvironment(const scene::Environment& environm
   }
   if (result.lights.size() > kMostEnvironmentLights)
     throw UsageError(
-        fmt::format("environment lights: the threshold {} asks for {} lights, more than {}; a smaller "
-                    "threshold or resolution gives fewer",
+        fmt::format("environment lights: the threshold {} asks for {} lights, more than {}; a smaller one "
+                    "gives fewer",
                     settings.threshold, result.lights.size(), kMostEnvironmentLights));
   sortByBrightness(result);
   return result;

@@ -77,12 +77,11 @@ VisibilityPass environmentSamplePass(const TechniqueInputs& inputs, std::string_
 
 TextureHandle addSampledEnvironment(frame::FrameGraph& graph, const TechniqueInputs& inputs,
                                     std::string_view technique, const EnvironmentSamples& samples,
-                                    TextureHandle target) {
-  const frame::BufferHandle buffer = graph.importBuffer("samples of the environment", samples.buffer());
+                                    frame::BufferHandle handle, TextureHandle target) {
   const bool coats = (inputs.handles.modelKinds & 1u << glsl::model_coated) != 0;
   TextureHandle mirrorSums;  // what a batch hands on to the next
   for (const SampleBatch& batch : sampleBatches(samples, inputs.parameters)) {
-    VisibilityPass pass = environmentSamplePass(inputs, technique, samples, buffer, batch,
+    VisibilityPass pass = environmentSamplePass(inputs, technique, samples, handle, batch,
                                                 "glsl/shadow/sampled_environment.comp.glsl");
     pass.image = "radiance";
     pass.accumulate = true;

@@ -56,10 +56,10 @@ LIMN_API VisibilityPass environmentSamplePass(const TechniqueInputs& inputs, std
                                               const SampleBatch& batch, std::string file);
 
 /// Adds the light of the samples that each pixel sees to the radiance `target`: the estimate that converges
-/// to the environment's direct light. Returns the target after it.
+/// to the environment's direct light. Returns the target after it. `handle`: as above.
 LIMN_API frame::TextureHandle addSampledEnvironment(frame::FrameGraph& graph, const TechniqueInputs& inputs,
                                                     std::string_view technique,
                                                     const EnvironmentSamples& samples,
-                                                    frame::TextureHandle target);
+                                                    frame::BufferHandle handle, frame::TextureHandle target);
 
 }  // namespace limn::shadow

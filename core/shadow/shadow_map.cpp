@@ -37,6 +37,12 @@ ShadowMapDesc ofWholeLights(ShadowMapDesc desc) {
   return desc;
 }
 
+/// Whether what the camera sees changes maps with MapFit::view and such a layout.
+bool followsView(const LightLayout& layout, const ShadowMapDesc& desc) {
+  return layout.faces == glsl::shadow_faces_single ||
+         (!desc.samples.empty() && glsl::shadow_face_count(layout.faces) > 2);
+}
+
 /// One set of maps and what draws it.
 struct Request {
   std::vector<uint32_t> lights;
@@ -200,6 +206,8 @@ bool ShadowMapService::Implementation::fit(Request& request) const {
   }
   request.depthViews.clear();
   for (const glsl::ShadowView& view : views) {
+    const bool punctual = view.light != glsl::no_light && !glsl::light_has_extent(lights[view.light]);
+    if (punctual && !request.desc.punctual) continue;
     request.depthViews.push_back(
         {.volume = cullVolume(view),
          .skipInstance = view.light == glsl::no_light ? glsl::no_instance : lights[view.light].own_instance,
@@ -271,11 +279,14 @@ ShadowMaps ShadowMapService::request(std::span<const uint32_t> lights, const Sha
   made->lights.assign(lights.begin(), lights.end());
   made->desc = desc;
   made->layouts = s.layoutsOf(*made);
+  if (std::ranges::none_of(made->layouts, [&](const LightLayout& l) { return followsView(l, desc); }))
+    made->desc.fit = MapFit::scene;  // until a layout changes: then the graph is built again
   for (const auto& known : s.requests) {
     if (!known->directions.empty() || !std::ranges::equal(known->lights, lights)) continue;
-    if (known->desc == desc) return known->maps;
-    if (made->cuts() || known->cuts() || ofWholeLights(known->desc) != ofWholeLights(desc)) continue;
-    if (desc.views == 0) known->desc = desc;  // update() has the graph built again once a light is to be cut
+    if (known->desc == made->desc) return known->maps;
+    if (made->cuts() || known->cuts() || ofWholeLights(known->desc) != ofWholeLights(made->desc)) continue;
+    if (desc.views == 0)
+      known->desc = made->desc;  // update() has the graph built again once a light is to be cut
     return known->maps;
   }
   return s.add(std::move(made), context());
@@ -289,6 +300,7 @@ ShadowMaps ShadowMapService::request(std::span<const glm::vec3> directions, cons
   made->desc.samples.clear();
   made->desc.views = 1;
   for (const auto& known : s.requests) {
+    if (!made->desc.cacheable) break;
     if (known->desc == made->desc && !directions.empty() && std::ranges::equal(known->directions, directions))
       return known->maps;
   }

@@ -52,6 +52,9 @@ struct ShadowMapDesc {
   /// Says whether the maps are kept while nothing changes, as long as all kept maps fit a limit of memory.
   /// False when many batches of maps share one piece of memory.
   bool cacheable = true;
+  /// Says whether anything is drawn into the maps of lights without extent. False where samples come in
+  /// batches and those of an earlier one have been used: nobody looks into them.
+  bool punctual = true;
   /// Says whether the maps also hold what reflects the light: glsl/indirect/reflective_map.glsl.
   bool reflective = false;
   /// Says whether reflective maps hold which draw instance a texel shows, in place of the albedo.
@@ -117,12 +120,14 @@ class LIMN_API ShadowMapService : public FrameService {
   ~ShadowMapService() override;
 
   /// Returns maps for `lights` (indices into Pose::lights), declared in the graph at the first request; equal
-  /// requests share them, and so do requests that differ in `views` alone while no light is cut. Throws
-  /// UsageError when the maps would take more memory or layers than the device has.
+  /// requests share them, and so do requests that differ in `views` alone while no light is cut, or in `fit`
+  /// alone while no map follows the view (MapFit). Throws UsageError when the maps would take more memory or
+  /// layers than the device has.
   ShadowMaps request(std::span<const uint32_t> lights, const ShadowMapDesc& desc);
   /// Returns maps for parallel light along `directions` (unit, of propagation) that belongs to no light of
   /// the pose: one orthographic map around the scene for each, and a ShadowLight whose light is
-  /// glsl::no_light. Samples of `desc` are not used.
+  /// glsl::no_light. Samples of `desc` are not used. Equal requests share maps that are cacheable; batches
+  /// are rendered for each, so that none of them is held until it is wanted again.
   ShadowMaps request(std::span<const glm::vec3> directions, const ShadowMapDesc& desc);
 
   /// Returns the layout of each light of a request. While the graph lives they stay the same: update() has it

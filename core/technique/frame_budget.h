@@ -16,7 +16,9 @@
 
 namespace limn {
 
-/// Chooses a level by the times of frames. It starts at the dearest one.
+/// Chooses a level by the times of frames. It starts at the dearest one. Times are taken to be a + b work,
+/// with a part a that no level changes: b follows from what a dearer level took, in proportion to what the
+/// level of now has taken since.
 class LIMN_API FrameBudget {
  public:
   /// Takes the time that a frame may take, ms, and the work of each level, from the cheapest to the dearest,
@@ -34,6 +36,9 @@ class LIMN_API FrameBudget {
 
  private:
   void choose(double median);
+  void note(double median);
+  double expected(int level, double median) const;
+  double work(int level) const { return work_[static_cast<size_t>(level)]; }
   void goTo(int level);
 
   static constexpr int kMedianOf = 5;           ///< frames at a level before it is judged
@@ -46,13 +51,16 @@ class LIMN_API FrameBudget {
   double position_, step_ = 0;
   std::array<double, kMedianOf> times_{};
   int timeCount_ = 0;
-  int tooDear_;  ///< the cheapest level that is not tried for now
+  std::vector<double> seen_;  ///< median time of each level, ms; 0: not known
+  bool tried_ = true;         ///< target() was risen to, or begun with, and is not judged yet
+  int tooDear_;               ///< the cheapest level that is not tried for now
   int caution_ = 0;
 };
 
 /// Holds the budgets of a renderer's techniques, from one graph to the next, and measures frames by the clock
 /// between their starts: on the frame path nothing waits for the GPU. Where a program waits for the end of a
-/// frame itself, what it does afterwards does not count. Frames that are given up have no time.
+/// frame itself, what it does afterwards does not count. Frames that are given up have no time, and frames of
+/// a graph in which nobody requested a budget say nothing about it.
 class LIMN_API FrameBudgetService : public FrameService {
  public:
   static constexpr const char* serviceName = "frame budgets";
@@ -66,6 +74,7 @@ class LIMN_API FrameBudgetService : public FrameService {
     double milliseconds;
     std::vector<double> work;
     FrameBudget budget;
+    bool requested = true;  ///< in the graph that was built last
   };
   void begin() override;
   bool update(frame::FrameGraph& graph, const scene::Pose& pose) override;

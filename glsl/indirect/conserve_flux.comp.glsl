@@ -30,7 +30,8 @@ void main() {
     }
   }
   for (int c = 0; c < 3; ++c) {
-    if (flux[c] > 0.0) flux[c] *= own_reflected[c] / sampled_flux[own][c] * (total[c] / met[c]);
+    bool some = met[c] > 0.0 && sampled_flux[own][c] > 0.0;  // sums are 0 where a map's mean is too small for a float
+    if (flux[c] > 0.0) flux[c] = some ? flux[c] * (own_reflected[c] / sampled_flux[own][c] * (total[c] / met[c])) : 0.0;
   }
   virtual_lights[index].flux = vec4(flux.rgb, 0.0);
 }

@@ -1,6 +1,6 @@
 // The shade pass of techniques that gather indirect light from virtual point lights. The work groups of one z shade the
 // pixels of one sub-buffer, which all have the same virtual lights. SPLIT 1: the G-buffer and the result lie sub-buffer by
-// sub-buffer; 0: both are screens. The result has the layers gather_part_*. LAMBERTIAN 1: no material has a specular
+// sub-buffer; 0: both are screens. The result has the layers gather_part_*. LAMBERTIAN 1: no lit surface has a specular
 // part. MATERIAL_MODELS, SURFACE_TANGENTS: see surface_response.glsl. ACCUMULATE 1: adds to what other batches of lights left.
 // VIRTUAL_LIGHT_COUNT: of lights, where they fit a uniform block.
 //

@@ -69,6 +69,7 @@ class SampledAreaLight : public Technique {
                                            const Batch& batch) {
     shadow::ShadowMapDesc desc = mapsOf(inputs.parameters, batch.first, batch.count);
     desc.cacheable = batch.count == batch.total;
+    desc.punctual = batch.isFirst();
     return {
         .name = "visibility",
         .technique = info.name,

@@ -24,7 +24,9 @@ constexpr StressCase kStress[] = {
 };
 
 class SampledEnvironmentLight : public Technique {
+  /// Of all requests: what enters translucent surfaces is asked for apart.
   shadow::EnvironmentSamples samples_;
+  frame::BufferHandle samplesHandle_;
 
   frame::TextureHandle addPasses(frame::FrameGraph& graph, const TechniqueInputs& inputs,
                                  const TermRequest& request) override {
@@ -33,10 +35,12 @@ class SampledEnvironmentLight : public Technique {
       graph.leaveOut("environment", info.name, "the environment is black");
       return request.target;
     }
-    if (samples_.count() == 0)
+    if (!samplesHandle_) {
       samples_ = shadow::EnvironmentSamples(inputs.gpuScene.device(), environment,
                                             inputs.parameters.integer("samples"));
-    return shadow::addSampledEnvironment(graph, inputs, info.name, samples_, request.target);
+      samplesHandle_ = graph.importBuffer("samples of the environment", samples_.buffer());
+    }
+    return shadow::addSampledEnvironment(graph, inputs, info.name, samples_, samplesHandle_, request.target);
   }
 
  public:

@@ -2,7 +2,10 @@
 
 #include <fmt/format.h>
 
+#include <map>
+
 #include "core/gpu_scene/gpu_scene.h"
+#include "core/scene/draw_instance.h"
 #include "core/shading_maps/shading_maps.h"
 #include "glsl/materials/material_model.glsl"
 #include "glsl/scene/blocks.glsl"
@@ -28,12 +31,21 @@ bool hasLobe(const scene::Material& m) {
 
 }  // namespace
 
-CachedMaterials::CachedMaterials(const scene::Scene& scene, bool answered)
+CachedMaterials::CachedMaterials(const scene::Scene& scene, const scene::Pose& pose, bool answered)
     : places(scene.materials.size(), glsl::no_instance) {
+  std::vector<bool> drawn(scene.materials.size());
+  for (const scene::DrawInstance& instance : pose.instances)
+    drawn[static_cast<size_t>(scene::materialIndexOf(scene, instance))] = true;
+  std::map<float, uint32_t> ofRoughness;  // places of materials without a model, whose colours pixels have
   for (size_t i = 0; i < scene.materials.size(); ++i) {
     const scene::Material& m = scene.materials[i];
-    if (!hasLobe(m)) continue;
+    if (!drawn[i] || !hasLobe(m)) continue;
     const char* why = reasonAgainst(m, answered);
+    const auto known = m.model ? ofRoughness.end() : ofRoughness.find(m.roughness);
+    if (!why && known != ofRoughness.end()) {
+      places[i] = known->second;
+      continue;
+    }
     if (!why && materials.size() == kMostCached) why = "there are more materials than the cache holds";
     if (why) {
       uncached.push_back({static_cast<int>(i), why});
@@ -41,13 +53,14 @@ CachedMaterials::CachedMaterials(const scene::Scene& scene, bool answered)
     }
     places[i] = static_cast<uint32_t>(materials.size());
     materials.push_back(static_cast<uint32_t>(i));
+    if (!m.model) ofRoughness.emplace(m.roughness, places[i]);
   }
 }
 
 bool RadianceCache::add(frame::FrameGraph& graph, const TechniqueInputs& inputs, std::string_view technique,
                         int samples) {
   const SceneHandles& handles = inputs.handles;
-  const CachedMaterials cached(inputs.scene, handles.surface != nullptr);
+  const CachedMaterials cached(inputs.scene, inputs.pose, handles.surface != nullptr);
   for (const UncachedMaterial& m : cached.uncached)
     graph.leaveOut(
         fmt::format("radiance cache of '{}'", inputs.scene.materials[static_cast<size_t>(m.material)].name),

@@ -20,18 +20,18 @@ struct UncachedMaterial {
   const char* why = "";
 };
 
-/// Says which materials have layers of the cache: those with a lobe that is the same all over, as many as
-/// fit.
+/// Says which materials have layers of the cache: those that something is drawn with and whose lobe is the
+/// same all over, as many as fit. Materials without a model share those of their roughness.
 struct CachedMaterials {
   std::vector<uint32_t> materials;  ///< of each place
   std::vector<uint32_t> places;     ///< of each material; glsl::no_instance: none
   std::vector<UncachedMaterial> uncached;
 
   /// `answered`: a technique answers Term::surface, so that lobes of models are not in the cache.
-  CachedMaterials(const scene::Scene& scene, bool answered);
+  CachedMaterials(const scene::Scene& scene, const scene::Pose& pose, bool answered);
 };
 
-/// The most materials that are cached: 64 MiB.
+/// The most places that the cache has: 64 MiB.
 inline constexpr size_t kMostCached = 128;
 
 class RadianceCache {

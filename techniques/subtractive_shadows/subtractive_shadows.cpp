@@ -67,7 +67,8 @@ constexpr Parameter kParameters[] = {
            "What the samples are: points drawn by the environment's brightness, or the regions it is "
            "decomposed into, each with all of its light"),
     real("region_threshold", 0.015, {1e-4, 0.5}, "",
-         "Least share of the environment's light that a region has; it says how many there are")
+         "Least share of a region's light that a further row of texels must add for the region to grow; "
+         "smaller: fewer regions")
         .logScale(),
     real("position_width", 2.2, {0.1, 100}, "blocks",
          "Standard deviation of the distance within which a pixel takes shadows from a block")
@@ -103,6 +104,7 @@ constexpr StressCase kStress[] = {
 };
 
 class SubtractiveShadows : public Technique {
+  /// Of all requests: what enters translucent surfaces is asked for apart.
   shadow::EnvironmentSamples samples_, unshadowed_;
   frame::BufferHandle samplesHandle_, unshadowedHandle_;
   RadianceCache cache_;
@@ -126,13 +128,11 @@ class SubtractiveShadows : public Technique {
           "subtractive_shadows: show goes with combine=subtract, ratio and ratio_split; what is added up is "
           "taken from no unshadowed light");
     chooseLevels(inputs);
-    takeSamples(environment, inputs, lights_);
+    takeSamples(graph, environment, inputs);
     if (p.choice("combine") == add && built_.more.block == 1 && !budget_)
-      return shadow::addSampledEnvironment(graph, inputs, info.name, samples_, request.target);
+      return shadow::addSampledEnvironment(graph, inputs, info.name, samples_, samplesHandle_,
+                                           request.target);
     const Unshadowed unshadowed = findUnshadowed(graph, inputs);
-    samplesHandle_ = graph.importBuffer("samples of the environment", samples_.buffer());
-    if (unshadowed == lights)
-      unshadowedHandle_ = graph.importBuffer("samples of the unshadowed light", unshadowed_.buffer());
     const TextureHandle target =
         Passes(graph, inputs, *this, built_.more.block, unshadowed).add(request.target);
     if (built_.fewer.block == built_.more.block) return target;
@@ -185,16 +185,19 @@ class SubtractiveShadows : public Technique {
     program.set("picture_share", alone ? 1 : block == now.more.block ? now.shareOfMore : 1 - now.shareOfMore);
   }
 
-  void takeSamples(const scene::EnvironmentLight& environment, const TechniqueInputs& inputs, int count) {
-    if (samples_.count() > 0) return;
+  void takeSamples(frame::FrameGraph& graph, const scene::EnvironmentLight& environment,
+                   const TechniqueInputs& inputs) {
+    if (samplesHandle_) return;
     const ParameterValues& p = inputs.parameters;
     gpu::Device& device = inputs.gpuScene.device();
     samples_ = p.choice("sampling") == regions
                    ? shadow::EnvironmentSamples(device, inputs.scene.environment, p.real("region_threshold"))
-                   : shadow::EnvironmentSamples(device, environment, count);
-    if (p.choice("unshadowed") == lights && p.choice("combine") != add)
-      unshadowed_ = shadow::EnvironmentSamples(device, environment,
-                                               p.integer("lights") * p.integer("unshadowed_factor"));
+                   : shadow::EnvironmentSamples(device, environment, lights_);
+    samplesHandle_ = graph.importBuffer("samples of the environment", samples_.buffer());
+    if (p.choice("unshadowed") != lights || p.choice("combine") == add) return;
+    unshadowed_ =
+        shadow::EnvironmentSamples(device, environment, p.integer("lights") * p.integer("unshadowed_factor"));
+    unshadowedHandle_ = graph.importBuffer("samples of the unshadowed light", unshadowed_.buffer());
   }
 
   /// Returns where the unshadowed light of a request comes from, and makes the cache where it comes from

@@ -101,6 +101,14 @@ class EnvironmentTest : public RenderTest {
     scene.nodes.push_back(camera);
     return scene;
   }
+  /// A floor of a body that light enters.
+  static scene::Scene translucentFloor() {
+    scene::Scene scene = floor();
+    scene::Material& body = scene.materials.front();
+    body.specularFactor = 1;
+    body.subsurface = scene::Subsurface{.extinction = glm::vec3(1e6f), .absorption = glm::vec3(0.1f)};
+    return scene;
+  }
   /// Puts a roof over the floor that hides all of the sky.
   static scene::Scene roofed(scene::Scene scene) {
     scene::Node roof;

@@ -321,10 +321,15 @@ TEST_F(IndirectPictureTest, NothingIsRedrawnWhileOnlyTheCameraMoves) {
     picture(renderer, s);
     renderer.setCamera(renderer.pose().cameras.at(1));
     renderer.render();
+    std::vector<std::string> kept;
     for (const auto& pass : renderer.explain())
       if (pass.technique == "indirect" || pass.technique == "shadow" || pass.name == "paraboloid maps") {
         EXPECT_EQ(pass.state, frame::PassState::cached) << pass.name << ", medium of " << sigma;
+        kept.push_back(pass.technique + " " + pass.name);
       }
+    EXPECT_THAT(kept, testing::IsSupersetOf({"shadow reflective shadow maps", "indirect virtual lights",
+                                             "instant_radiosity paraboloid maps"}))
+        << sigma;
   }
 }
 
@@ -338,6 +343,14 @@ class TwiceLitTest : public IndirectPictureTest {
       return pass.technique == technique && pass.state == frame::PassState::run &&
              pass.name.substr(0, pass.name.find_last_not_of(" 0123456789") + 1) == name;
     }));
+  }
+  /// Of what the pass writes: one for each part of the light.
+  static int layers(const render::Renderer& renderer, std::string_view name) {
+    for (const frame::PassReport& pass : renderer.explain())
+      if (pass.technique == "reflective_shadow_map" && pass.name == name)
+        for (const frame::AccessReport& access : pass.accesses)
+          if (access.write && access.texture) return access.texture->layers;
+    return 0;
   }
   Image all(render::Renderer& renderer, const std::string& name,
             const std::vector<std::pair<std::string, std::string>>& values) {
@@ -385,15 +398,18 @@ TEST_F(TwiceLitTest, WhatEntersHasNoSpecularPart) {
   const scene::Scene scene = asset("milk");
   render::Renderer renderer(device(), scene);
   all(renderer, "reflective_shadow_map", {{"vpls", "64"}});
-  const auto layers = [&](std::string_view name) {
-    for (const frame::PassReport& pass : renderer.explain())
-      if (pass.technique == "reflective_shadow_map" && pass.name == name)
-        for (const frame::AccessReport& access : pass.accesses)
-          if (access.write && access.texture) return access.texture->layers;
-    return 0;
-  };
-  EXPECT_EQ(layers("shade"), 2) << "at the boundaries";
-  EXPECT_EQ(layers("shade 2"), 1);
+  EXPECT_EQ(layers(renderer, "shade"), 2) << "at the boundaries";
+  EXPECT_EQ(layers(renderer, "shade 2"), 1);
+}
+
+/// Mirrors and glass take no light, and of a material that nothing is drawn with there is none.
+TEST_F(TwiceLitTest, LambertianSurfacesHaveNoSpecularPartBesideGlassAndUnusedMaterials) {
+  scene::Scene scene = asset("glass_sphere");
+  scene.materials.push_back(asset("milk").materials[3]);
+  ASSERT_FALSE(scene.materials.back().lambertian() || scene.materials.back().specularSurface());
+  render::Renderer renderer(device(), scene);
+  all(renderer, "reflective_shadow_map", {{"vpls", "64"}});
+  EXPECT_EQ(layers(renderer, "shade"), 1);
 }
 
 }  // namespace

@@ -65,7 +65,8 @@ class PermutationTest : public EnvironmentTest {
 
   /// Where the technique has something to answer. The first scene sees all combinations; each of the others
   /// has lights, materials or a medium that core's programs depend on. Under an environment fresnel_spheres
-  /// and disk_and_sphere have every model that prefiltered_environment has a lobe or an albedo for.
+  /// and disk_and_sphere have every model that prefiltered_environment has a lobe or an albedo for, and of
+  /// translucent_spheres techniques are asked for light twice.
   static std::vector<std::string> scenesFor(const std::string& name) {
     const auto answers = [&](Term term) { return contains(registry().find(name).info->terms, term); };
     if (answers(Term::media) || answers(Term::caustic) || answers(Term::specular))
@@ -79,7 +80,8 @@ class PermutationTest : public EnvironmentTest {
     if (answers(Term::subsurface))
       scenes = {"translucent_edge", "translucent_spheres", "translucent_checker"};
     if (answers(Term::environment)) scenes.emplace_back("balls_sky");
-    if (lightsByEnvironmentAlone(name)) scenes.insert(scenes.end(), {"fresnel_spheres", "disk_and_sphere"});
+    if (lightsByEnvironmentAlone(name))
+      scenes.insert(scenes.end(), {"fresnel_spheres", "disk_and_sphere", "translucent_spheres"});
     return scenes;
   }
 

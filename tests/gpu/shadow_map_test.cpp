@@ -225,6 +225,25 @@ TEST_F(ShadowMapTest, SamplesOfALightGetMapsOfTheirOwn) {
   EXPECT_EQ(maps.views.size(), 9u);
 }
 
+/// Batches of samples after the first one do not look into the map that samples of a point share.
+TEST_F(ShadowMapTest, MapsOfLightsWithoutExtentAreDrawnOnlyWhereTheyAreUsed) {
+  scene::Scene scene;
+  addMesh(scene, floorPrimitive(2, addMaterial(scene)));
+  scene::Pose pose;
+  addInstance(scene, pose, 0);
+  addLight(pose, spotLight({0, 4, 0}, {0, -1, 0}, 0.4f));
+  addLight(pose, rectangleLight({0, 4, 0}, {0, -1, 0}, 2, 1));
+  shadow::ShadowMapDesc desc{.size = 16, .samples = {{0, 0.5f}, {0.5f, 1}}};
+  for (const bool punctual : {true, false}) {
+    desc.punctual = punctual;
+    const Maps maps = draw(scene, pose, {0, 1}, desc);
+    ASSERT_EQ(maps.views.size(), 3u);
+    EXPECT_EQ(maps.stored(0, 8, 8) < 1, punctual);
+    EXPECT_LT(maps.stored(1, 8, 8), 1);
+    EXPECT_LT(maps.stored(2, 8, 8), 1);
+  }
+}
+
 TEST_F(ShadowMapTest, LightsThatGainOrLoseExtentHaveTheGraphBuiltAgain) {
   scene::Scene scene;
   addMesh(scene, floorPrimitive(2, addMaterial(scene)));
@@ -294,6 +313,29 @@ TEST_F(ShadowMapTest, StaticMapsAreCachedAndSharedAndFollowWhatMoves) {
   pose.lights[0].position.y = 0.1f;
   gpuScene.update(pose, camera, {64, 64}, 3);
   EXPECT_TRUE(services.update(graph, pose)) << "one map is not enough any more";
+  gpuScene.forget();
+}
+
+/// Cubes from one point are whole however they are fitted; from samples each face follows the view.
+TEST_F(ShadowMapTest, MapsThatDoNotFollowTheViewAreSharedHoweverTheyAreFitted) {
+  scene::Scene scene;
+  addMesh(scene, floorPrimitive(2, addMaterial(scene)));
+  scene::Pose pose;
+  addInstance(scene, pose, 0);
+  addLight(pose, pointLight({0, 1, 0}));
+  scene::GpuScene gpuScene(device(), scene);
+  gpuScene.update(pose, scene::frameBounds(pose.bounds), {64, 64}, 0);
+  FrameServices services;
+  auto& service = services.add<shadow::ShadowMapService>(device(), gpuScene);
+  frame::FrameGraph graph;
+  const auto building = services.begin(graph, gpuScene.import(graph), pose);
+  const std::vector<uint32_t> lights{0};
+  const auto view = shadow::MapFit::view;
+  const shadow::ShadowMaps whole = service.request(lights, {.size = 16});
+  EXPECT_EQ(service.request(lights, {.size = 16, .fit = view, .lightSize = 0.1f}).depth, whole.depth);
+  const shadow::ShadowMaps sampled = service.request(lights, {.size = 16, .samples = {{0, 0}, {1, 1}}});
+  EXPECT_NE(service.request(lights, {.size = 16, .samples = {{0, 0}, {1, 1}}, .fit = view}).depth,
+            sampled.depth);
   gpuScene.forget();
 }
 

@@ -38,6 +38,17 @@ class UnshadowedEnvironmentTest : public EnvironmentTest {
     return scene;
   }
 
+  /// Draws the floor once more with that material, below itself.
+  static void addBelow(scene::Scene& scene, int material) {
+    scene::Primitive hidden = scene.meshes[0].primitives[0];
+    hidden.material = material;
+    scene::Node node;
+    node.mesh = static_cast<int>(scene.meshes.size());
+    node.transform.translation = {0, -1, 0};
+    scene.meshes.push_back({"below the floor", {std::move(hidden)}, {}});
+    scene.nodes.push_back(node);
+  }
+
   static vec3 linear(vec3 d) { return 1.f + 0.8f * d; }
 
   static Image light(render::Renderer& renderer, const std::string& unshadowed, Values values = {}) {
@@ -363,13 +374,42 @@ TEST_F(UnshadowedEnvironmentTest, TheCacheIsKeptUntilTheViewChanges) {
 }
 
 TEST_F(UnshadowedEnvironmentTest, MaterialsThatDoNotFitTheCacheHaveTheLightOfFilteredMaps) {
-  scene::Scene scene = floorOf(metal(51 / 255.f), sky());
-  scene.materials.insert(scene.materials.begin(), 128, metal(51 / 255.f));
-  for (const int material : {127, 128}) {
-    scene.meshes[0].primitives[0].material = material;
-    render::Renderer renderer(device(), scene);
-    EXPECT_EQ(rmse(light(renderer, "cache"), light(renderer, "prefiltered")) == 0, material == 128);
+  scene::Scene scene = floorOf(metal(1), sky());
+  for (int i = 0; i <= 128; ++i) {
+    scene.materials.push_back(metal(0.2f + 0.001f * static_cast<float>(i)));
+    addBelow(scene, i + 1);
   }
+  for (const int place : {127, 128}) {
+    scene.meshes[0].primitives[0].material = place + 1;
+    render::Renderer renderer(device(), scene);
+    EXPECT_EQ(rmse(light(renderer, "cache"), light(renderer, "prefiltered")) == 0, place == 128);
+  }
+}
+
+/// Places are taken by what is drawn, one for each roughness: colours are the pixels' own.
+TEST_F(UnshadowedEnvironmentTest, TheCacheHasAPlaceForEachRoughness) {
+  constexpr float kRoughness = 51 / 255.f;
+  scene::Scene scene = floorOf(metal(kRoughness), sky());
+  Image shown;
+  const auto bytes = [&]() -> int64_t {
+    render::Renderer renderer(device(), scene);
+    shown = light(renderer, "cache");
+    for (const frame::PassReport& row : renderer.explain())
+      if (row.name == "radiance cache") return row.bytes;
+    return 0;
+  };
+  const int64_t one = bytes();
+  EXPECT_GT(one, 0);
+  scene.materials.push_back(metal(0.7f));
+  EXPECT_EQ(bytes(), one) << "nothing is drawn with the second material";
+  addBelow(scene, 1);
+  EXPECT_EQ(bytes(), 2 * one);
+  const Image apart = shown;
+  scene.materials.insert(scene.materials.begin(), metal(kRoughness, {0.1f, 0.2f, 1}));
+  scene.meshes[0].primitives[0].material = 1;  // the floor's own is second now
+  scene.meshes[1].primitives[0].material = 0;
+  EXPECT_EQ(bytes(), one) << "both have one roughness";
+  EXPECT_EQ(rmse(shown, apart), 0);
 }
 
 }  // namespace

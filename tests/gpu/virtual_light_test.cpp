@@ -345,6 +345,27 @@ TEST_F(VirtualLightTest, SeveralLightsShareThemByFlux) {
   expectFlux(sample(scene, pose, {.count = 2}), fromPoint + fromStrong, 0.01f);
 }
 
+/// Half of a floor reflects a channel whose mean over the map is below the least float where that of the one
+/// sample, if it falls on that half, is not.
+TEST_F(VirtualLightTest, ChannelsTooWeakForASumAreLost) {
+  for (const float red : {-0.1f, 0.1f}) {
+    scene::Scene scene;
+    scene::Pose pose;
+    addMesh(scene, floorPrimitive(0.1f, addMaterial(scene, lambert({1, 1, 0}))));
+    addMesh(scene, floorPrimitive(0.1f, addMaterial(scene, lambert({0, 1, 0}))));
+    addInstance(scene, pose, 0, at(red, 0, 0));
+    addInstance(scene, pose, 1, at(-red, 0, 0));
+    glsl::Light light = directionalLight({0, -1, 0}, 0);
+    for (float weak = 1e-36f; weak > 2e-38f; weak *= 0.7f) {
+      light.emission = vec3(weak, 1, 0);
+      pose.lights.clear();
+      pose.lightNames.clear();
+      addLight(pose, light);
+      EXPECT_GT(sample(scene, pose, {.count = 1, .mapSize = 16}).flux.y, 0) << weak;
+    }
+  }
+}
+
 TEST_F(VirtualLightTest, NothingToLightIsHarmless) {
   scene::Scene scene;
   scene::Pose pose;

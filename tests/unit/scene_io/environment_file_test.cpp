@@ -53,6 +53,12 @@ TEST_F(EnvironmentFile, ThatIsNoneIsRefused) {
               AllOf(HasSubstr("depth.exr: no channels R, G, B"), HasSubstr("Z, id")));
 }
 
+TEST_F(EnvironmentFile, IsReadUnderANameInCapitals) {
+  const std::filesystem::path capitals = folder_ / "SKY.EXR";
+  std::filesystem::rename(sky({2}), capitals);
+  EXPECT_EQ(load(capitals).texels[2 * 16].y, 2);
+}
+
 TEST_F(EnvironmentFile, WithinTheRangeIsTakenAsItIs) {
   const scene::Environment e = load(sky({0, 1e-30f, 65504, scene::kMostEnvironmentRadiance}));
   EXPECT_TRUE(warnings_.empty());
