@@ -105,6 +105,11 @@ bool narrow_box(ShadowCursor cursor, PatchProjection projection, AlignedPatches 
 bool blocker_box(inout ShadowCursor cursor, VisibilityQuery q, uint face, float gap, out TexelBox box,
                  out PatchProjection projection, out AlignedPatches aligned, out bool umbra) {
   umbra = true;
+  // Kernels hold the square as large as a disc; what is drawn of it may reach beyond that. Patches do not ask for a disc's sides.
+  if (q.light.cone) {
+    q.light.side_u *= DISC_SIDE / square_of_disc;
+    q.light.side_v *= DISC_SIDE / square_of_disc;
+  }
   ShadowKernel kernel;
   if (!shadow_kernel_in_face(cursor, q, face, gap, least_kernel_width, kernel)) return false;
   vec2 size = vec2(cursor.view.size);

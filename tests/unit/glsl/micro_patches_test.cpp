@@ -132,9 +132,7 @@ TEST(MicroPatches, TexelsOfAPlaneCoverTheLightOnce) {
     const float angle = 0.3f * float(turn);
     const vec3 x(view.axis_x), y(view.axis_y);
     view.axis_x = std::cos(angle) * x + std::sin(angle) * y;
-    view.scale = view.scale;
     view.axis_y = std::cos(angle) * y - std::sin(angle) * x;
-    view.footprint = view.footprint;
     const Setting s(light, view, vec3(0.4f, 0, 0.3f));
     float area = 0;
     for (int i = 0; i < kMapTexels * kMapTexels; ++i) {

@@ -56,6 +56,23 @@ TEST(ShadowKernel, IsAsWideAsTheFrameworkSays) {
   }
 }
 
+/// The square that stands for a sun is as large as its disc.
+TEST(ShadowKernel, OfASunIsAsLargeAsItsDisc) {
+  Light sun = squareLight(0, vec3(0), vec3(0, -1, 0));
+  sun.type = light_directional;
+  for (const float angle : {0.01f, 0.5f}) {
+    sun.angular_diameter = angle;
+    const ShadowView view = viewOf(sun, shadow_orthographic, 0, 512);
+    const LightView seen = light_view(sun, vec3(0), vec3(0, 1, 0), -1);
+    ShadowKernel kernel;
+    ASSERT_TRUE(shadow_kernel(view, seen, vec3(0), 3, true, least_kernel_width, kernel));
+    const float radius = 3 * std::tan(0.5f * angle) * view.scale * 512;  // texels
+    const vec2 extent = kernel.high - kernel.low;
+    EXPECT_NEAR(extent.x, extent.y, 1e-3f * extent.x);
+    EXPECT_NEAR(extent.x * extent.y / (pi * radius * radius), 1, 1e-3f) << angle;
+  }
+}
+
 TEST(ShadowKernel, CollapsesToTheReceiversTexelAtTheReceiver) {
   const Light light = squareLight(2, vec3(0, 10, 0), vec3(0, -1, 0));
   for (const uint32_t kind : {shadow_perspective, shadow_orthographic, shadow_paraboloid}) {
