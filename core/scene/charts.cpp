@@ -8,6 +8,7 @@
 #include <numeric>
 #include <queue>
 #include <unordered_map>
+#include <utility>
 
 namespace limn::scene {
 namespace {
@@ -164,8 +165,11 @@ class Layers {
     const vec2 e = p[1] - p[0], f = p[2] - p[0];
     const float area = e.x * f.y - e.y * f.x;
     if (area == 0) return;
-    for (int y = static_cast<int>(std::floor(low.y)); y <= static_cast<int>(high.y); ++y)
-      for (int x = static_cast<int>(std::floor(low.x)); x <= static_cast<int>(high.x); ++x) {
+    for (int y = static_cast<int>(std::floor(low.y)); y <= static_cast<int>(high.y); ++y) {
+      const auto [from, to] = acrossRow(p, static_cast<float>(y) + 0.5f);
+      if (from > to) continue;
+      for (int x = static_cast<int>(std::floor(std::max(from - 1, low.x)));
+           x <= static_cast<int>(std::min(to + 1, high.x)); ++x) {
         const vec2 d = vec2(x, y) + 0.5f - p[0];
         const float u = (d.x * f.y - d.y * f.x) / area, v = (e.x * d.y - e.y * d.x) / area;
         if (u < 0 || v < 0 || u + v > 1) continue;
@@ -174,6 +178,20 @@ class Layers {
                              v * alongAxis(surface_.corner(t, 2), axis_);
         add({x, y}, height);
       }
+    }
+  }
+  /// Returns between which x a triangle lies at this y, the first above the second where it does not: long
+  /// narrow ones take few of the cells around them.
+  static std::pair<float, float> acrossRow(const std::array<vec2, 3>& p, float y) {
+    float from = std::numeric_limits<float>::max(), to = -from;
+    for (size_t k = 0; k < 3; ++k) {
+      const vec2 &a = p[k], &b = p[(k + 1) % 3];
+      if (a.y == b.y || std::min(a.y, b.y) > y || std::max(a.y, b.y) < y) continue;
+      const float x = a.x + (y - a.y) / (b.y - a.y) * (b.x - a.x);
+      from = std::min(from, x);
+      to = std::max(to, x);
+    }
+    return {from, to};
   }
   void add(const glm::ivec2& cell, float height) {
     const auto key =

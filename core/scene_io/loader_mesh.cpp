@@ -125,6 +125,11 @@ void Loader::readAttributes(const tinygltf::Primitive& source, Primitive& out, c
     out.tangents = toVec4(readFloats(tangent, {4}, count, what + " TANGENT"));
   if (const int colour = attribute(attributes, "COLOR_0"); colour != kNone)
     out.colours = toVec4(readFloats(colour, {3, 4}, count, what + " COLOR_0"));
+  // Coefficients say what their surface reflects; of its colours only a mask's alpha is left.
+  if (material.subsurface && !material.subsurface->albedoFromBaseColour) {
+    if (material.alphaCutoff == 0) out.colours.clear();
+    for (glm::vec4& c : out.colours) c = glm::vec4(glm::vec3(1), c.a);
+  }
   readUvs(source, out, what);
   readSkinAttributes(source, out, what);
 }

@@ -3,6 +3,8 @@
 
 #include <algorithm>
 #include <cmath>
+#include <cstdint>
+#include <utility>
 
 #include "core/base/error.h"
 #include "core/scene/subsurface.h"
@@ -112,6 +114,28 @@ std::optional<Subsurface> Loader::readScatterDraft(const tinygltf::Material& sou
   return s;
 }
 
+int Loader::maskOf(int image, const std::string& what) {
+  const auto [known, added] = maskIndex_.try_emplace(image, image);
+  if (!added) return known->second;
+  const auto index = static_cast<std::size_t>(image);
+  const auto forColours = [](TextureImage& of, auto&& take) {
+    for (TextureImage::Level& level : of.levels)
+      for (std::size_t i = 0; i < level.rgba.size(); ++i)
+        if (i % 4 != 3) take(level.rgba[i]);
+  };
+  bool white = true;
+  forColours(scene_.images[index], [&](std::uint8_t& value) { white = white && value == 255; });
+  if (white) return image;
+  const TextureImage::Level& whole = scene_.images[index].levels.front();
+  texels_ += static_cast<std::uint64_t>(whole.width) * static_cast<std::uint64_t>(whole.height);
+  if (texels_ > limits_.imageTexels)
+    fail(fmt::format("{}: more than {} texels in all images", what, limits_.imageTexels));
+  TextureImage mask = scene_.images[index];
+  forColours(mask, [](std::uint8_t& value) { value = 255; });
+  scene_.images.push_back(std::move(mask));
+  return known->second = static_cast<int>(scene_.images.size()) - 1;
+}
+
 void Loader::applySubsurface(const tinygltf::Material& source, Material& material, const std::string& what) {
   std::optional<Subsurface> s;
   std::string place = what + " limn_subsurface";
@@ -130,9 +154,16 @@ void Loader::applySubsurface(const tinygltf::Material& source, Material& materia
   material.metallic = 0;
   material.transmission = 0;
   if (s->albedoFromBaseColour) return;
-  if (material.baseColourTexture.image != kNone && material.alphaCutoff == 0) {
-    warn(place + ": the baseColorTexture has no part in it; mean_free_path takes the albedo from it");
-    material.baseColourTexture = {};
+  if (TextureRef& texture = material.baseColourTexture; texture.image != kNone) {
+    const int mask = material.alphaCutoff > 0 ? maskOf(texture.image, place) : kNone;
+    if (mask != texture.image)
+      warn(place +
+           ": the colours of the baseColorTexture have no part in it; mean_free_path takes the "
+           "albedo from them");
+    if (mask == kNone)
+      texture = {};
+    else
+      texture.image = mask;
   }
   material.baseColour = glm::vec4(subsurfaceAlbedo(s->absorption, material.ior), material.baseColour.a);
 }

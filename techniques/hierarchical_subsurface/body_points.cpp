@@ -5,6 +5,7 @@
 #include <limits>
 
 #include "core/scene/draw_instance.h"
+#include "core/scene/normal_matrix.h"
 #include "core/scene/subsurface.h"
 #include "glsl/scene/light.glsl"
 
@@ -25,6 +26,14 @@ void copyDraw(const scene::Pose& pose, uint32_t draw, scene::Pose& own) {
   if (copy.deformed == scene::kNone) return;
   own.deformed.assign(1, pose.deformed[static_cast<size_t>(copy.deformed)]);
   copy.deformed = 0;
+}
+
+/// Returns the inverse of a matrix, nothing where it has none.
+std::optional<glm::dmat4> inverseOf(const glm::mat4& matrix) {
+  const glm::dmat4 inverse = glm::inverse(glm::dmat4(matrix));
+  for (int column = 0; column < 4; ++column)
+    if (glm::any(glm::isnan(inverse[column])) || glm::any(glm::isinf(inverse[column]))) return std::nullopt;
+  return inverse;
 }
 
 }  // namespace
@@ -52,8 +61,15 @@ bool BodyPoints::fits(const scene::Pose& pose) const {
 
 void BodyPoints::update(const scene::Pose& pose) {
   for (size_t i = 0; i < parts_.size(); ++i) {
-    copyDraw(pose, parts_[i].draw, parts_[i].pose);
-    parts_[i].elements->update(parts_[i].pose);
+    Body& part = parts_[i];
+    if (part.toOwn) {
+      const glm::mat4 &now = pose.instances[part.draw].objectToWorld,
+                      &made = part.pose.instances.front().objectToWorld;
+      part.motion = now == made ? glm::dmat4(1) : glm::dmat4(now) * *part.toOwn;
+    } else {
+      copyDraw(pose, part.draw, part.pose);
+      part.elements->update(part.pose);
+    }
     place(i);
   }
 }
@@ -81,6 +97,9 @@ BodyPoints::Body BodyPoints::makeBody(uint32_t draw, const scene::Pose& pose, in
   const float area = create(10);
   const auto fewer = static_cast<float>(body.elements->surfels().size()) < static_cast<float>(count);
   if (fewer && area > 0) create(std::sqrt(kPointsPerSquare * area / static_cast<float>(count)));
+  body.elements->update(body.pose);  // clusters are where points are that left what encloses them
+  if (body.pose.instances.front().deformed == scene::kNone)
+    body.toOwn = inverseOf(body.pose.instances.front().objectToWorld);
   return body;
 }
 
@@ -88,13 +107,20 @@ void BodyPoints::place(size_t index) {
   const Body& part = parts_[index];
   const radiosity::SceneElements& elements = *part.elements;
   const radiosity::ElementSpace& space = elements.space();
-  tree_.place(index, elements.forest(), space, part.areas);
+  const glm::dvec3 centre(space.centre());
+  const glm::dvec3 way = glm::dvec3(part.motion * glm::dvec4(centre, 1)) - centre;
+  tree_.place(
+      index, elements.forest(), space, part.areas,
+      {.turn = glm::mat3(part.motion), .shift = glm::vec3(way / static_cast<double>(space.radius()))});
+  const bool still = part.motion == glm::dmat4(1);
+  const glm::mat3 toNormal = scene::normalMatrix(glm::mat4(part.motion));
   for (uint32_t slot = 0; slot < elements.forest().leafSlots(); ++slot) {
     if (!(part.areas[slot] > 0)) continue;
     const radiosity::Leaf& leaf = elements.leaves()[slot];
-    points_[tree_.node(index, 0, slot)] = {.position = glm::vec3(leaf.position),
+    const glm::vec3 normal(leaf.normal);
+    points_[tree_.node(index, 0, slot)] = {.position = glm::vec3(part.motion * glm::dvec4(leaf.position)),
                                            .instance = part.draw,
-                                           .normal = glm::vec3(leaf.normal),
+                                           .normal = still ? normal : glm::normalize(toNormal * normal),
                                            .reach = std::sqrt(part.areas[slot]) * space.radius()};
   }
   const scene::Material& material = scene::materialOf(scene_, part.pose.instances.front());

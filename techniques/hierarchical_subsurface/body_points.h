@@ -1,7 +1,9 @@
 // Declares the points of the translucent bodies of a scene: what moves them, lights them and walks over them.
 #pragma once
 
+#include <glm/glm.hpp>
 #include <memory>
+#include <optional>
 #include <span>
 #include <vector>
 
@@ -41,6 +43,10 @@ class BodyPoints {
     std::unique_ptr<radiosity::SceneElements> elements;
     std::vector<float> areas;  ///< of each leaf slot
     float spacing = 0;         ///< side of the area of the point at a random place
+    /// Takes the elements from where they are into the draw's own space, so that they move as the matrix
+    /// says. Nothing where that cannot be: the elements themselves follow what is deformed.
+    std::optional<glm::dmat4> toOwn;
+    glm::dmat4 motion{1};  ///< takes the elements from where they are to where the draw is, world
   };
   Body makeBody(uint32_t draw, const scene::Pose& pose, int count) const;
   void place(size_t index);

@@ -12,6 +12,13 @@
 
 namespace limn::hierarchical_subsurface {
 
+/// Says how a body has moved since its forest was placed: what was at `p` is at turn * p + shift. Lengths are
+/// in radii of the body.
+struct BodyMotion {
+  glm::mat3 turn{1};
+  glm::vec3 shift{0};
+};
+
 /// Holds nodes level by level, the leaves of all bodies first, so that one dispatch sums a level of all
 /// bodies.
 class WalkTree {
@@ -48,9 +55,10 @@ class WalkTree {
   /// Returns where walks through a body begin, or glsl::scatter_none.
   uint32_t first(size_t body) const { return firsts_[body]; }
 
-  /// Sets where a body's nodes are, by its forest. `areas`: of each leaf slot.
+  /// Sets where a body's nodes are, by its forest and how the body has moved since then: centroids move with
+  /// what they are of. `areas`: of each leaf slot.
   void place(size_t body, const radiosity::Forest& forest, const radiosity::ElementSpace& space,
-             std::span<const float> areas) {
+             std::span<const float> areas, const BodyMotion& motion = {}) {
     const auto levels = forest.levels();
     for (size_t level = 0; level < levels.size(); ++level)
       for (uint32_t g = levels[level].first; g < levels[level].first + levels[level].count; ++g)
@@ -58,7 +66,7 @@ class WalkTree {
           const glsl::ElementGroup& group = forest.groups()[g];
           const auto k = static_cast<int>(lane);
           glsl::ScatterNode& n = nodes_[node(body, level, 4 * g + lane)];
-          n.centre = space.worldDirection({group.x[k], group.y[k], group.z[k]});
+          n.centre = motion.turn * space.worldDirection({group.x[k], group.y[k], group.z[k]}) + motion.shift;
           n.area = level == 0 ? areas[4 * g + lane] : 0;
           for (uint32_t child = 0; child < n.child_count; ++child) n.area += nodes_[n.children + child].area;
         }

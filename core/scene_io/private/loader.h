@@ -176,6 +176,9 @@ class Loader {
   /// where the material says nothing of a volume.
   std::optional<Subsurface> readScatterDraft(const tinygltf::Material& source, const Material& material,
                                              const std::string& what);
+  /// Returns the index in Scene::images of an image with another one's alpha and no colour: its own where it
+  /// has none.
+  int maskOf(int image, const std::string& what);
   /// Returns one number for all channels or three of them, none negative.
   glm::vec3 readChannels(const tinygltf::Value& object, const char* key, const std::string& what);
 
@@ -290,6 +293,7 @@ class Loader {
   std::vector<std::span<const std::byte>> buffers_;
   std::vector<std::vector<std::byte>> bufferStorage_;
   std::map<std::pair<int, bool>, int> imageIndex_;  ///< (image, sRGB) to Scene::images
+  std::map<int, int> maskIndex_;                    ///< of Scene::images, to what maskOf() made of them
   /// Holds what tells resampled images apart: the index in Scene::images of what they show, and UvMap.
   using ResampledKey = std::tuple<int, bool, int, int, double, double>;
   std::map<ResampledKey, int> resampledIndex_;  ///< to Scene::images

@@ -201,6 +201,23 @@ TEST(Charts, TrianglesAndTheirOwnBacksAreTwoSheets) {
 }
 
 // Sheets that cover all cells take none of them in the end: 28 GB if they did.
+// Of strands across the diagonal the cells around each are 65536, those below it some hundreds: with the
+// former it takes seconds.
+TEST(Charts, NarrowTrianglesTakeTheCellsBelowThem) {
+  Body body;
+  constexpr uint32_t strands = 20000;
+  for (uint32_t i = 0; i < strands; ++i) {
+    const float x = static_cast<float>(i) / strands, width = 0.5f / strands;
+    for (const vec3& p : {vec3(x, 0, 0), vec3(x + width, 0, 0), vec3(x + 1, 1, 0)}) {
+      body.indices.push_back(static_cast<uint32_t>(body.positions.size()));
+      body.positions.push_back(p);
+    }
+  }
+  const auto charts = makeCharts(body.positions, body.indices, 0.01);
+  ASSERT_TRUE(charts);
+  EXPECT_EQ(charts->size(), strands);
+}
+
 TEST(Charts, StacksTakeLittleMemoryAndTime) {
   Body body;
   for (uint32_t i = 0; i < 2000; ++i) {

@@ -114,6 +114,48 @@ TEST(SceneSubsurface, AModelAndAnUnusedTextureAreWarnedOf) {
   }
 }
 
+// The albedo follows from the coefficients alone, whatever colours the mesh and the mask have.
+TEST(SceneSubsurface, CoefficientsLeaveOfColoursOnlyTheMask) {
+  for (const bool masked : {false, true})
+    for (const bool lengths : {false, true}) {
+      GltfBuilder b;
+      const int index = b.texturedMaterial(png(1, 1, {10, 20, 30, 40}));
+      b.root["materials"][0]["extras"]["limn_subsurface"] =
+          lengths ? json{{"mean_free_path", 0.01}} : json{{"sigma_a", 1}, {"sigma_s_prime", 1}};
+      if (masked) b.root["materials"][0]["alphaMode"] = "MASK";
+      b.triangle(index);
+      b.root["meshes"][0]["primitives"][0]["attributes"]["COLOR_0"] =
+          b.vec4(std::vector<glm::vec4>(3, {0.5f, 0.25f, 0, 0.75f}));
+      const scene::Scene scene = loadBuilt(b);
+      const scene::TextureRef& texture = scene.materials.at(0).baseColourTexture;
+      const std::vector<glm::vec4>& found = scene.meshes.at(0).primitives.at(0).colours;
+      ASSERT_EQ(found.empty(), !lengths && !masked);
+      ASSERT_EQ(texture.image == scene::kNone, !lengths && !masked);
+      EXPECT_EQ(scene.warnings.size(), lengths ? 0u : 1u);
+      if (found.empty()) continue;
+      EXPECT_EQ(found[0], lengths ? glm::vec4(0.5f, 0.25f, 0, 0.75f) : glm::vec4(1, 1, 1, 0.75f));
+      const std::vector<uint8_t>& texel = scene.images[static_cast<size_t>(texture.image)].levels.at(0).rgba;
+      if (lengths) {
+        EXPECT_THAT(texel, ElementsAre(10, 20, 30, 40));
+      } else {
+        EXPECT_THAT(texel, ElementsAre(255, 255, 255, 40));
+      }
+    }
+}
+
+// A mask without colours is read once and warned of by nobody.
+TEST(SceneSubsurface, WhiteMasksStay) {
+  GltfBuilder b;
+  const int index = b.texturedMaterial(png(1, 1, {255, 255, 255, 40}));
+  b.root["materials"][0]["extras"]["limn_subsurface"] = {{"sigma_a", 1}, {"sigma_s_prime", 1}};
+  b.root["materials"][0]["alphaMode"] = "MASK";
+  b.triangle(index);
+  const scene::Scene scene = loadBuilt(b);
+  EXPECT_THAT(scene.warnings, IsEmpty());
+  EXPECT_EQ(scene.images.size(), 1u);
+  EXPECT_EQ(scene.materials.at(0).baseColourTexture.image, 0);
+}
+
 TEST(SceneSubsurface, DraftsOfKhronosSayTheSame) {
   for (const auto& [name, colour] : {std::pair{"KHR_materials_volume_scatter", "multiscatterColor"},
                                      std::pair{"KHR_materials_scatter", "multiscatterColorFactor"}}) {

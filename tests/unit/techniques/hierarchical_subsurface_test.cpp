@@ -214,6 +214,27 @@ TEST_F(HierarchicalSubsurface, ClustersHoldTheAreaAndCentroidOfTheirPoints) {
   }
 }
 
+// Of a body that moves as a whole nobody asks again where its points are among themselves.
+TEST_F(HierarchicalSubsurface, NodesMoveWithTheirBody) {
+  build({joined(sphere(5)), square(3)});
+  const std::vector<glsl::ScatterNode> before(tree_.nodes().begin(), tree_.nodes().end());
+  const BodyMotion motion{.turn = glm::mat3(0, 1.2f, 0, -0.9f, 0, 0.1f, 0, 0, 1), .shift = {3, -2, 0.5f}};
+  std::vector<float> areas(forests_[1].leafSlots(), 0);
+  for (size_t i = 0; i < surfels_[1].size(); ++i) areas[forests_[1].leafOf()[i]] = surfels_[1].areas[i];
+  tree_.place(1, forests_[1], radiosity::ElementSpace(), areas, motion);
+  std::vector<bool> moved(before.size(), false);
+  for (uint32_t at = tree_.first(1); at != glsl::scatter_none;) {
+    moved[at] = true;
+    at = before[at].children != glsl::scatter_none ? before[at].children : before[at].next;
+  }
+  for (size_t i = 0; i < before.size(); ++i) {
+    const glsl::ScatterNode &was = before[i], &is = tree_.nodes()[i];
+    EXPECT_EQ(is.area, was.area);
+    const glm::vec3 expected = moved[i] ? motion.turn * was.centre + motion.shift : was.centre;
+    EXPECT_LT(glm::length(is.centre - expected), 1e-6f);
+  }
+}
+
 // A cluster of area A that looks as large as the tolerance t from distance s = sqrt(A / t) has points within
 // sqrt(A / 2) of its centroid, with a mean square of A / 12 along each of two axes. The profile falls at most
 // as s^-3 where it is not exponential, so that the second order is at most 12 / (2 s^2) A / 12 = t / 2 of it;
