@@ -154,6 +154,9 @@ void main() {
     DrawingPlane facing = drawing_plane(place, -normalize(place), facing_plane, body.unit, screen);
 #endif
     vec3 light = vec3(0.0), weights = vec3(0.0);
+#if WIDEST
+    vec3 shared_weights = vec3(0.0);
+#endif
     float hits = 0.0, inside_picture = 0.0;
     uint index = body.first_point + sub_buffer * uint(SAMPLES);
     for (int i = 0; i < SAMPLES; ++i, ++index) {
@@ -207,13 +210,22 @@ void main() {
         light += shared_weight * entering_light(tap);
         weights += weight;
         hits += 1.0;
+#if WIDEST
+        shared_weights += shared_weight;
+#endif
       }
     }
     vec3 here = entering_light(pixel);
 #if TEXTURED && ROOT
     here *= sqrt(colours.reflectance);
 #endif
-    vec3 mean = entry_mean(light, weights, hits, float(SAMPLES), NORMALISE, here);
+    vec3 sums = weights;
+#if WIDEST
+    // The integral over the root of two profiles is at most the root of both reflectances (Cauchy-Schwarz). Without this, a dark
+    // pixel's few weights far away would be divided by almost nothing.
+    sums = max(sums, shared_weights * inversesqrt(max(from.widest.reflectance, vec3(1e-30))));
+#endif
+    vec3 mean = entry_mean(light, sums, hits, float(SAMPLES), NORMALISE, here);
 #if LIGHT_VIEWS
     mean *= entry_seen_share(weights, hits, inside_picture, NORMALISE);
     vec3 hidden = hidden_light(from, body, boundary, place, own.w, sub_buffer, screen);

@@ -225,6 +225,32 @@ TEST_F(SubsurfaceScatteringTest, ColoursMixByTheRootOfBothOrStayTheirOwn) {
   }
 }
 
+// Few points tell of a channel whose light gets a twentieth as far as that of those they are drawn for. By
+// the inequality of Cauchy and Schwarz no integral over the root of two profiles is larger.
+TEST_F(SubsurfaceScatteringTest, FewPointsBringNoMoreThanTheRootOfBothReflectances) {
+  scene::Scene scene = twoColours();
+  scene.materials[0].subsurface->extinction = vec3(20 * kExtinction, kExtinction, kExtinction);
+  std::vector<double> entering;
+  forEachPoint(drawn(scene, Term::subsurface, {}), [&](float value, const vec3& p) {
+    entering.push_back(static_cast<double>(value / (p.x < 0 ? kDark : kBright)));
+  });
+  const auto reflectance = [&](size_t profile, float albedo) {
+    return reflectanceOverAlbedo(profile, absorptionOf(albedo)) * static_cast<double>(albedo);
+  };
+  for (size_t profile = 0; profile < kProfileNames.size(); ++profile)
+    for (const char* samples : {"1", "2", "4", "16"}) {
+      double largest = 0;
+      size_t index = 0;
+      const Choices values{{"profile", kProfileNames[profile]}, {"samples", samples}};
+      forEachPoint(below(scene, values), [&](float value, const vec3& p) {
+        const double own = reflectance(profile, p.x < 0 ? kDark : kBright);
+        const double most = std::sqrt(own * reflectance(profile, kBright)) * entering[index++];
+        largest = std::max(largest, static_cast<double>(value) / most);
+      });
+      EXPECT_LE(largest, 1.005) << kProfileNames[profile] << ' ' << samples;
+    }
+}
+
 TEST_F(SubsurfaceScatteringTest, OtherBodiesGetNoLight) {
   // The shadow reaches a little further than the one of two bodies.
   const scene::Scene scene = shadowed(floor(kExtinction, kAbsorption), 0.05f);
