@@ -58,8 +58,11 @@ int runBench(const BenchArguments& options) {
   fmt::print("{} rows measured, {} were there already, {} failed; the report is {}, tables are in {}\n",
              summary.done, summary.skipped, summary.failed, (options.out / "index.html").string(),
              (options.out / "tables.md").string());
+  if (summary.shortened > 0)
+    fmt::print("{} rows lack turns, since a further turn of theirs failed; the same command adds them\n",
+               summary.shortened);
   const bool regressed = before && reportRegressions(*before, options.out);
-  return summary.failed > 0 || regressed ? 1 : 0;
+  return !summary.complete() || regressed ? 1 : 0;
 }
 
 }  // namespace

@@ -29,9 +29,7 @@ int run(const std::vector<fs::path>& folders, const fs::path& out) {
   const ResultsFolder results(out, {}, 0);
   const TechniqueRegistry registry(TechniqueRegistry::defaultFolders());
   session::CaseOrigins origins(registry);
-  int added = 0;
-  for (const fs::path& folder : measured)
-    added += bench::mergeResults(folder, out, [&](const bench::Case& c) { return origins.of(c); });
+  const int added = bench::mergeResults(measured, out, [&](const bench::Case& c) { return origins.of(c); });
   results.writeReport();
   const std::vector<bench::Row> rows = results.rows();
   fmt::print("{} rows added; {} has {} of {} that did not fail\n", added, (out / "results.jsonl").string(),

@@ -29,6 +29,17 @@ struct PassesArguments {
 
 constexpr const char* kJsonName = "passes.json";
 
+/// Throws Error unless the folder can be made, or written to where it exists.
+void checkFolderWritable(const fs::path& folder) {
+  std::error_code unknown;
+  fs::path first = fs::absolute(folder, unknown) / kJsonName;  // what is made in a folder that exists
+  const auto place = [&] { return first.parent_path(); };
+  while (place().has_relative_path() && !fs::exists(place(), unknown)) first = place();
+  if (!fs::is_directory(place(), unknown))
+    throw Error(fmt::format("{}: cannot be written: {} is a file", folder.string(), place().string()));
+  checkWritable(first);
+}
+
 /// The files that an earlier run wrote to the folder. Throws UsageError for a folder with anything else in
 /// it.
 std::vector<std::string> earlierFiles(const fs::path& folder) {
@@ -81,6 +92,7 @@ int runPasses(const PassesArguments& options) {
   settings.size = view.size;
   settings.light = view.light;
   const std::vector<std::string> earlier = earlierFiles(options.out);
+  checkFolderWritable(options.out);
 
   const auto context = Context::create(options.backend.contextOptions());
   gpu::Device device(*context);

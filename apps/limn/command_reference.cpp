@@ -1,7 +1,6 @@
 // limn reference: the ground truth of one term, on the CPU.
 #include <fmt/format.h>
 
-#include <charconv>
 #include <limits>
 #include <optional>
 #include <string>
@@ -15,6 +14,7 @@
 #include "core/base/error.h"
 #include "core/base/file.h"
 #include "core/base/file_lock.h"
+#include "core/base/text.h"
 #include "core/reference/reference.h"
 #include "core/reference/vertices.h"
 #include "core/session/view.h"
@@ -36,13 +36,6 @@ struct ReferenceArguments {
   double longestEdge = 0.05;
   fs::path out, cache;
 };
-
-template <class Integer>
-std::optional<Integer> parseWhole(const std::string& text) {
-  Integer value = 0;
-  const auto [end, error] = std::from_chars(text.data(), text.data() + text.size(), value);
-  return error == std::errc{} && end == text.data() + text.size() ? std::optional(value) : std::nullopt;
-}
 
 /// CLI11 takes -1 for the largest number there is, and larger ones as well.
 uint64_t parseSeed(const std::string& text) {
@@ -183,7 +176,7 @@ Action addReferenceCommand(CLI::App& command) {
       .add_option("-o,--out", options->out,
                   "Picture (.exr with all channels, or .png); interrupted work is kept beside it")
       ->required();
-  for (const char* ofPictures : {"--noise", "--aa", "--exposure", "--tonemap", "--cache"})
+  for (const char* ofPictures : {"--noise", "--size", "--aa", "--exposure", "--tonemap", "--cache"})
     atVertices->excludes(command.get_option(ofPictures));
   return [options] { return runReference(*options); };
 }

@@ -2,6 +2,7 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <cmath>
 #include <map>
 #include <nlohmann/json.hpp>
 #include <optional>
@@ -111,7 +112,7 @@ class Tuning {
   /// Measures how many times as long a frame's G-buffer and shading take in full size as in a look.
   void measureRest(const bench::TuneSetting& setting) {
     const bench::Case large = caseOf(setting, bench::scaleOf(plan_)), small = caseOf(setting, plan_.look);
-    measureCases({small, large}, "tune, comparing sizes");
+    measureCases({large, small}, "tune, comparing sizes");  // tables and page begin with what is asked for
     const bench::CostSplit &above = rowOf(large).cost.split, &below = rowOf(small).cost.split;
     rest_ = below.rest > 0 && above.rest > 0 ? std::max(1.0, above.rest / below.rest) : pixelsOver(small);
   }
@@ -119,6 +120,11 @@ class Tuning {
   void measureCases(const std::vector<bench::Case>& cases, const std::string& progressName) {
     folder_->measure(cases, progressName, Measured::here);
     for (bench::Row& row : folder_->rows()) rows_[row.key] = std::move(row);
+    for (std::size_t i = 0; i < cases.size(); ++i) {
+      bench::Row& row = rows_.at(bench::rowKey(cases[i], folder_->renderer()));
+      // A row of elsewhere would answer with times of elsewhere.
+      if (row.failure.empty() && folder_->failed(i)) row.failure = "it failed here, though not elsewhere";
+    }
   }
 
   std::vector<bench::TuneFigures> measured(std::span<const bench::TuneSetting> settings,
@@ -143,6 +149,10 @@ class Tuning {
       if (failure_.empty()) failure_ = fmt::format("{}: {}", bench::label(c), row.failure);
       return {0, 0, true};
     }
+    if (!std::isfinite(*error))
+      throw Error(fmt::format(
+          "the {} of {} is infinite, as under a black reference, and tells no settings apart; use {}",
+          goal_.metric.label, bench::label(c), metricInfo(&Metrics::rmse).key));
     return {*error, bench::msAtPixels(row, pixelsOver(c), rest_.value_or(1)), false};
   }
 

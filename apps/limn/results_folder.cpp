@@ -67,10 +67,21 @@ class CaseWork {
          : state == WorkerReport::State::done  ? summary.done
                                                : summary.failed);
     }
+    if (fs::exists(file_))
+      summary.shortened = bench::shortenedRows(cases_, report_.renderer(), bench::readRows(file_));
     return summary;
   }
 
   std::string renderer() const { return report_.renderer(); }
+
+  /// Whether each case failed, in their order.
+  std::vector<bool> failed() const {
+    std::vector<bool> failed;
+    for (std::size_t i = 0; i < cases_.size(); ++i)
+      failed.push_back(report_.state(i) == WorkerReport::State::failed ||
+                       report_.state(i) == WorkerReport::State::open);
+    return failed;
+  }
 
  private:
   /// In the worker: measures what there is no row for.
@@ -193,6 +204,7 @@ bench::Summary ResultsFolder::measure(const std::vector<bench::Case>& cases, con
   CaseWork work(cases, folder_, backend_, stallTimeout_, progressName, counts);
   const bench::Summary summary = work.run();
   renderer_ = work.renderer();
+  failed_ = work.failed();
   return summary;
 }
 

@@ -32,11 +32,14 @@ class ResultsFolder {
   /// changed since, with a progress bar of that name. Measures in a separate process: a case that crashes, or
   /// that stalls, loses only its own row. No thread and no OpenGL context may exist. With Measured::here rows
   /// of another machine or driver are measured again as well. Returns how many rows were measured, found and
-  /// failed.
+  /// failed, and how many lack turns.
   bench::Summary measure(const std::vector<bench::Case>& cases, const std::string& progressName,
                          Measured counts = Measured::anywhere);
   /// Returns the renderer of the last rows that were measured or found; "" before.
   const std::string& renderer() const { return renderer_; }
+  /// Returns whether case `index` of the last measure() failed there. A good row of another machine or driver
+  /// may be in its place still.
+  bool failed(std::size_t index) const { return failed_[index]; }
   /// Returns all rows of the folder.
   std::vector<bench::Row> rows() const;
   /// Writes tables and report of all rows.
@@ -50,6 +53,7 @@ class ResultsFolder {
   double stallTimeout_;
   FileLock lock_;
   std::string renderer_;
+  std::vector<bool> failed_;
 };
 
 }  // namespace limn::app

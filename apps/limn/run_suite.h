@@ -23,7 +23,8 @@ struct SuiteRun {
 /// has changed since, with a progress bar, and writes tables and report. Throws UsageError before anything is
 /// measured when the suite names what does not exist, and Error when another process works in `out`. Measures
 /// in a separate process: a case that crashes, or that shows no sign of life for too long, loses only its own
-/// row. No thread and no OpenGL context may exist. Returns how many rows were measured, found and failed.
+/// row. No thread and no OpenGL context may exist. Returns how many rows were measured, found and failed, and
+/// how many lack turns.
 bench::Summary runSuite(const std::filesystem::path& suite, const std::filesystem::path& out,
                         const BackendOptions& backend, const SuiteRun& run = {});
 

@@ -6,6 +6,7 @@
 #include <algorithm>
 #include <iterator>
 #include <set>
+#include <span>
 #include <sstream>
 
 #include "apps/limn/results_folder.h"
@@ -38,6 +39,18 @@ std::vector<fs::path> finishedParts(const fs::path& out) {
     if (fs::exists(entry.path() / "results.jsonl", ignored)) folders.push_back(entry.path());
   std::ranges::sort(folders);
   return folders;
+}
+
+/// The parts that some of the cases in `some` are in, which stand in the order of `all`.
+std::set<int> partsWith(std::span<const bench::Case> some, std::span<const bench::Case> all, int count) {
+  const std::vector<int> parts = bench::partsOf(all, count);
+  std::set<int> with;
+  for (std::size_t i = 0, next = 0; i < all.size() && next < some.size(); ++i)
+    if (all[i] == some[next]) {
+      with.insert(parts[i]);
+      ++next;
+    }
+  return with;
 }
 
 /// This program, as a word for a shell.
@@ -84,6 +97,7 @@ fs::path jobsFile(const fs::path& out) {
 }
 
 /// Refuses while Slurm knows the array that measures or the job that merges: either may be cancelled alone.
+/// Jobs of other users are not asked for, which a cluster may hide.
 void refuseWhileRunning(const fs::path& out) {
   if (!fs::exists(jobsFile(out))) return;
   const std::vector<std::string> jobs = wordsOf(readTextFile(jobsFile(out)));
@@ -104,6 +118,10 @@ std::string submitSuite(const fs::path& suiteFile, const fs::path& folder, const
         "--slurm: there is no sbatch; on a machine without Slurm, --shard i/n and limn merge do by hand "
         "what it would do");
   const fs::path suite = fs::absolute(suiteFile), out = fs::absolute(folder);
+  // With one, sbatch fills in no pattern: all parts would write one log.
+  if (out.string().find('\\') != std::string::npos)
+    throw UsageError(fmt::format(
+        "--out '{}' is not accepted with --slurm: sbatch takes no \\ in names of output", folder.string()));
   const bench::Suite asked = bench::readSuite(suite);
   const auto cases = bench::selectCases(asked.cases, run.filters);
   if (cases.empty())
@@ -113,7 +131,8 @@ std::string submitSuite(const fs::path& suiteFile, const fs::path& folder, const
   const TechniqueRegistry registry(TechniqueRegistry::defaultFolders());
   session::CaseOrigins origins(registry);
   const auto provenance = [&](const bench::Case& c) { return origins.of(c); };
-  for (const fs::path& part : finishedParts(out)) bench::mergeResults(part, out, provenance);
+  if (const std::vector<fs::path> finished = finishedParts(out); !finished.empty())
+    bench::mergeResults(finished, out, provenance);
   results.check(cases);
   if (fs::exists(out / "results.jsonl")) {  // merging keeps the folder's rows with the labels of before
     bench::ResultsFile merged(out / "results.jsonl");
@@ -123,22 +142,14 @@ std::string submitSuite(const fs::path& suiteFile, const fs::path& folder, const
   std::set<std::string> questions;
   for (const bench::Case& c : cases) questions.insert(bench::question(c));
   const int parts = std::min(static_cast<int>(questions.size()), kPartsPerNode * job.nodes);
-  std::vector<int> open;
-  std::size_t missing = 0;
-  const std::vector<bench::Row> rows = results.rows();
-  for (int part = 1; part <= parts; ++part) {
-    const std::size_t count =
-        bench::unfinishedCases(bench::selectCases(asked.cases, run.filters, {part, parts}), rows, provenance)
-            .size();
-    missing += count;
-    if (count > 0) open.push_back(part);
-  }
-  if (open.empty()) {
+  const std::vector<bench::Case> missing = bench::unfinishedCases(cases, results.rows(), provenance);
+  if (missing.empty()) {
     results.writeReport();
     return fmt::format("all {} rows are there; the report is {}", cases.size(),
                        (out / "index.html").string());
   }
 
+  const std::set<int> open = partsWith(missing, cases, parts);
   const fs::path script = out / "slurm" / "part.sh";
   createFolder(script.parent_path());
   writeTextFile(script, taskScript(suite, out, parts, run, job));
@@ -162,7 +173,7 @@ std::string submitSuite(const fs::path& suiteFile, const fs::path& folder, const
   return fmt::format(
       "{} of {} rows are missing or to be measured again: job {} measures them in {} parts on {} nodes, "
       "job {} merges them; the same command goes on with what is left then",
-      missing, cases.size(), array, open.size(), job.nodes, last);
+      missing.size(), cases.size(), array, open.size(), job.nodes, last);
 }
 
 }  // namespace limn::app

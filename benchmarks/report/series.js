@@ -14,6 +14,13 @@ export function ownName(row, name) {
   return name.startsWith(own) && !row.technique.includes(",") ? name.slice(own.length) : name;
 }
 
+/** What a row is called in tables; a mark, which outdatedText() explains, tells rows that another version measured. */
+export const markedTitle = (row) => `${row.title || row.technique}${row.outdated ? " †" : ""}`;
+
+/** What the mark says, where a row has it. */
+export const outdatedText = (rows) => (rows.some((row) => row.outdated)
+  ? "† measured with another version of the program, of a technique or of the scene than the newest row. " : "");
+
 /** "samples=16 bias=2" */
 export function settingsText(row, names = null) {
   return Object.entries(settings(row)).filter(([name]) => !names || names.includes(name))

@@ -2,7 +2,7 @@
 import {el, number} from "./dom.js";
 import {TIMES, errorText, isNumber, knownMetrics, lowFrequencyShare, measured, paretoFront} from "./metrics.js";
 import {page} from "./page.js";
-import {settingsText} from "./series.js";
+import {markedTitle, outdatedText, settingsText} from "./series.js";
 import {percent, sparkline} from "./spectrum.js";
 
 const FRAME = TIMES[0];
@@ -18,7 +18,7 @@ const cell = (value) => el("td", {}, value);
 const text = (value) => el("td", {class: "text"}, value);
 
 function nameCell(row, onCurrent) {
-  const name = `${row.title || row.technique}${row.outdated ? " †" : ""}`;
+  const name = markedTitle(row);
   return el("th", {scope: "row"}, onCurrent ? el("button", {type: "button", click: () => onCurrent(row)}, name) : name);
 }
 
@@ -53,10 +53,8 @@ export function errorTable(table, metric, time, onCurrent) {
       traced ? cell(referenceText(row.reference_ms)) : null, cell(isNumber(row.memory_bytes) ? number(row.memory_bytes / 2 ** 20) : "–"), cell(front.includes(row) ? "*" : ""));
   });
   const compared = table.baseline ? `Times as fast: against ${table.baseline}, with the interval of 95 % (n = 1: one turn, no interval). ` : "";
-  const outdated = table.rows.some((row) => row.outdated)
-    ? "† measured with another version of the program, of a technique or of the scene than the newest row. " : "";
-  return tableElement(`Errors and times. ${compared}${outdated}* on the Pareto front of ${metric.label} and time (${time.label}); < below three ` +
-    "times the reference's noise", head, rows);
+  return tableElement(`Errors and times. ${compared}${outdatedText(table.rows)}` +
+    `* on the Pareto front of ${metric.label} and time (${time.label}); < below three times the reference's noise`, head, rows);
 }
 
 /**

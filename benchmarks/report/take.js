@@ -2,14 +2,16 @@
 import {breakable, chooser, el, milliseconds, number, putChoosers, slider} from "./dom.js";
 import {command} from "./command.js";
 import {METRICS, TIMES, errorText, knownMetrics, measured, paretoFront} from "./metrics.js";
-import {curves as curvesOf, settingsText} from "./series.js";
+import {curves as curvesOf, markedTitle, outdatedText, settingsText} from "./series.js";
 import {tableElement} from "./tables.js";
 import {swatch} from "./marks.js";
 
+/** `of` is the figure of a point that the budget bounds: which of several errors below the noise is less, nobody knows. */
 const KINDS = [
-  {key: "ms", bounded: "at most this time", label: "Most milliseconds", text: milliseconds,
+  {key: "ms", of: "ms", bounded: "at most this time", label: "Most milliseconds", text: milliseconds,
    better: (a, b) => a.bound - b.bound || a.ms - b.ms},
-  {key: "error", bounded: "at most this error", label: "Largest error", text: number, better: (a, b) => a.ms - b.ms || a.bound - b.bound},
+  {key: "error", of: "bound", bounded: "at most this error", label: "Largest error", text: number,
+   better: (a, b) => a.ms - b.ms || a.bound - b.bound},
 ];
 
 /** All points of the curves: {row, error, ms, bound, curve}. */
@@ -17,16 +19,26 @@ function pointsOf(curves, metric, time) {
   return curves.flatMap((curve) => measured(curve.rows, metric, time).map((point) => ({...point, curve})));
 }
 
-/** The best point within the budget, and the best of another curve: of least error in that time, or quickest at that error. */
+/**
+ * The best point within the budget, and the best of another curve: of least error in that time, or quickest at that error.
+ * Outdated points come after all others.
+ */
 export function take(curves, metric, time, kind, budget) {
-  const within = pointsOf(curves, metric, time).filter((point) => point[kind.key] <= budget).sort(kind.better);
+  const age = ({row}) => (row.outdated ? 1 : 0);
+  const within = pointsOf(curves, metric, time).filter((point) => point[kind.of] <= budget)
+    .sort((a, b) => age(a) - age(b) || kind.better(a, b));
   return {best: within[0] ?? null, next: within.find((point) => point.curve !== within[0].curve) ?? null};
 }
 
 const pointText = (point, metric) => `${metric.label} ${errorText(metric, point.row)}, ${milliseconds(point.ms)}`;
 
 function settingName({row, curve}) {
-  return el("strong", {}, swatch(curve), breakable(row.title || row.technique), " ", breakable(settingsText(row)));
+  return el("strong", {}, swatch(curve), breakable(markedTitle(row)), " ", breakable(settingsText(row)));
+}
+
+function outdatedNote(points) {
+  const text = outdatedText(points.map(({row}) => row));
+  return text ? el("p", {class: "note"}, text) : null;
 }
 
 /** The middle of the values on a logarithmic scale. */
@@ -36,7 +48,7 @@ const middle = (values) => [...values].sort((a, b) => a - b)[Math.floor(values.l
 function asked(all, answer) {
   const said = el("p", {"aria-live": "polite"}), body = el("div"), tools = el("div", {class: "tools"});
   const choose = (kind) => {
-    const values = all.map((point) => point[kind.key]).filter((value) => value > 0);
+    const values = all.map((point) => point[kind.of]).filter((value) => value > 0);
     // The ends are values that rows have: rounding must not lose them.
     const show = (value) => {
       const {line, below} = answer(kind, value * (1 + 1e-9));
@@ -49,7 +61,7 @@ function asked(all, answer) {
       slider(kind.label, values, middle(values), kind.text, show),
     ]);
   };
-  const kinds = KINDS.filter(({key}) => all.some((point) => point[key] > 0));
+  const kinds = KINDS.filter(({of}) => all.some((point) => point[of] > 0));
   if (kinds.length === 0) return null;
   choose(kinds[0]);
   return [tools, said, body];
@@ -64,6 +76,7 @@ export function takeOne(curves, metric, time, onBudget) {
     return {line: ["Take ", settingName(best), `: ${pointText(best, metric)}.`], below: [
       command(best.row),
       next && el("p", {class: "note"}, "Runner-up: ", settingName(next), `: ${pointText(next, metric)}.`),
+      outdatedNote([best, next].filter(Boolean)),
     ].filter(Boolean)};
   };
   const parts = asked(pointsOf(curves, metric, time), answer);
@@ -87,14 +100,15 @@ function takeMany(tables, metric, time, onVisit) {
   const fronts = tables.map((table) => {
     const curves = curvesOf(table.rows), points = pointsOf(curves, metric, time);
     return {table, curves, points, front: paretoFront(points)};
-  }).filter(({points}) => points.length > 0);
+  });
   const answer = (kind, budget) => {
     const taken = fronts.map(({curves}) => take(curves, metric, time, kind, budget));
-    const lineOf = ({table}, {best}) => el("tr", {}, el("th", {scope: "row"}, el("button", {type: "button",
+    const lineOf = ({table, points}, {best}) => el("tr", {}, el("th", {scope: "row"}, el("button", {type: "button",
       click: () => onVisit(table, best?.row)}, table.subject)), best
-      ? [el("td", {class: "text"}, breakable(best.row.title || best.row.technique)), el("td", {class: "text"}, settingsText(best.row)),
+      ? [el("td", {class: "text"}, breakable(markedTitle(best.row))), el("td", {class: "text"}, settingsText(best.row)),
          el("td", {}, errorText(metric, best.row)), el("td", {}, number(best.ms)), el("td", {class: "text"}, command(best.row))]
-      : el("td", {class: "text", colspan: 5}, `nothing keeps ${kind.text(budget)}`));
+      : el("td", {class: "text", colspan: 5},
+           points.length > 0 ? `nothing keeps ${kind.text(budget)}` : "no row has both a time and this error"));
     const counts = tally(fronts, taken), [most, {best: often}] = counts[0];
     const kept = taken.filter(({best}) => best).length;
     const counted = counts.map(([technique, {asked, front, best}]) => el("tr", {}, el("th", {scope: "row"}, technique),
@@ -107,7 +121,8 @@ function takeMany(tables, metric, time, onVisit) {
         fronts.map((front, i) => lineOf(front, taken[i]))),
       tableElement("In how many scenes a technique is the one to take, is on the Pareto front, and was measured",
         [{label: "technique", text: true}, {label: "to take"}, {label: "on the front"}, {label: "measured"}], counted),
-    ]};
+      outdatedNote(taken.flatMap(({best}) => best ?? [])),
+    ].filter(Boolean)};
   };
   return asked(fronts.flatMap(({points}) => points), answer) ?? [el("p", {class: "note"}, "No row has both a time and this error.")];
 }

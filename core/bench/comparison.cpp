@@ -73,9 +73,10 @@ std::string measuredText(const Ratio& ratio) {
 }
 
 const Row* quickest(std::span<const Row> rows, const std::string& technique, const MetricInfo& error,
-                    std::optional<double> limit) {
+                    std::optional<double> limit, const std::function<bool(const Row&)>& counts) {
   const Row* best = nullptr;
   for (const Row& row : rows) {
+    if (counts && !counts(row)) continue;
     if (!isTimed(row) || row.what.technique != technique || boundedError(error, errorOf(row)) > limit)
       continue;
     if (best == nullptr || row.cost.frameMs.median < best->cost.frameMs.median) best = &row;

@@ -34,11 +34,9 @@ bool replaces(const Row& row, const Row& known, const std::function<Provenance(c
   return !known.failure.empty() || (sameOrigin && rank(row) > rank(known));
 }
 
-}  // namespace
-
-int mergeResults(const fs::path& from, const fs::path& into,
-                 const std::function<Provenance(const Case&)>& provenance) {
-  ResultsFile results(into / "results.jsonl");
+/// Appends what one folder has to the rows of `into`, which are `results`.
+int mergeFolder(const fs::path& from, const fs::path& into, ResultsFile& results,
+                const std::function<Provenance(const Case&)>& provenance) {
   int appended = 0;
   for (const Row& row : readRows(from / "results.jsonl")) {
     const Row* known = results.find(row.key);
@@ -51,6 +49,16 @@ int mergeResults(const fs::path& from, const fs::path& into,
     results.append(row);
     ++appended;
   }
+  return appended;
+}
+
+}  // namespace
+
+int mergeResults(std::span<const fs::path> from, const fs::path& into,
+                 const std::function<Provenance(const Case&)>& provenance) {
+  ResultsFile results(into / "results.jsonl");  // read once: a sweep has hundreds of parts
+  int appended = 0;
+  for (const fs::path& folder : from) appended += mergeFolder(folder, into, results, provenance);
   return appended;
 }
 

@@ -133,12 +133,14 @@ struct Site {
 };
 
 /// What tells a table from the others of its subject and term. Names of machines and drivers are long: they
-/// stand only where a renderer has several.
+/// stand only where a renderer has several. Where every row failed, the renderer's other tables say whether
+/// it is software.
 std::string howMeasured(const Row& row, const Site& site, const Site& ofRenderer) {
   std::string text =
       fmt::format("{}, {}, {}, {}", sizesText(row.what), row.what.dynamic ? "dynamic" : "static",
                   referenceText(row.what), row.cost.renderer);
-  if (site.software) text += *site.software ? " (software)" : " (hardware)";
+  if (const std::optional<bool> software = site.software ? site.software : ofRenderer.software)
+    text += *software ? " (software)" : " (hardware)";
   for (const auto names : {&Site::machines, &Site::drivers})
     if ((ofRenderer.*names).size() > 1)
       for (const std::string& name : site.*names) text += ", " + name;

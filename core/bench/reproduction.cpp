@@ -26,9 +26,11 @@ constexpr const char* kReading =
     "number of turns of the two. With n = 1 a ratio is refused, since nothing says how far it\n"
     "scatters. `RMSE` is that of both, for visibility in the penumbra; below the noise of a reference it\n"
     "is a bound. `differ in` lists every setting that both sides have and that differs, whether it takes\n"
-    "effect or not. `at equal error` puts in the first one's place the quickest row of its technique, of\n"
-    "the same suite and scene, whose RMSE is not above the second's. Where the rules of several verdicts\n"
-    "apply, the later one counts. `at` is the second row's scene and size with renderer and machine.\n\n";
+    "effect or not. `at equal error` puts in the first one's place the quickest row of its technique in\n"
+    "the second's table (one scene, size, reference and machine) whose RMSE is not above the second's, of\n"
+    "those that the newest version measured where there are any.\n"
+    "Where the rules of several verdicts apply, the later one counts. `at` is the second row's scene\n"
+    "and size with renderer and machine.\n\n";
 
 /// Whether the label contains the part; one with ^ or $ is its beginning or its end.
 bool contains(const std::string& name, std::string_view part) {
@@ -43,7 +45,7 @@ struct Found {
   const Table* table = nullptr;
 };
 
-/// Every row that fits; all have one label, which names neither renderer nor machine.
+/// Every row that fits, the newest last; all have one label, which names neither renderer nor machine.
 std::vector<Found> find(std::span<const Table> tables, const std::vector<std::string>& parts) {
   std::vector<Found> found;
   for (const Table& table : tables) {
@@ -56,6 +58,7 @@ std::vector<Found> find(std::span<const Table> tables, const std::vector<std::st
       found.push_back({&row, &table});
     }
   }
+  std::ranges::stable_sort(found, {}, [](const Found& f) { return f.row->line; });
   return found;
 }
 
@@ -70,13 +73,19 @@ struct Sides {
 };
 
 /// The last row that fits the second side and has a first side of the same renderer and machine, with the
-/// last of these; nothing where there are no such two.
+/// last of these; a claim of times takes untimed rows only where there are no such two that are timed.
+/// Nothing where there are no such two at all.
 std::optional<Sides> findSides(const Claim& claim, std::span<const Table> tables) {
   const std::vector<Found> slow = find(tables, claim.slow), fast = find(tables, claim.fast);
+  std::optional<Sides> untimed;
   for (const Found& second : fast | std::views::reverse)
-    for (const Found& first : slow | std::views::reverse)
-      if (sameMachine(*first.row, *second.row)) return Sides{first, second};
-  return std::nullopt;
+    for (const Found& first : slow | std::views::reverse) {
+      if (!sameMachine(*first.row, *second.row)) continue;
+      if (claim.measure == ClaimMeasure::memory || (isTimed(*first.row) && isTimed(*second.row)))
+        return Sides{first, second};
+      if (!untimed) untimed = Sides{first, second};
+    }
+  return untimed;
 }
 
 /// Two rows side by side: how they are shown, and what they say of the thesis's ratio.
@@ -110,6 +119,15 @@ struct EqualError {
   std::optional<Verdict> verdict = {};
 };
 
+/// The quickest row of the technique that errs no more; an outdated one only where the newest version
+/// measured none that does.
+const Row* quickestAtEqualError(const Table& table, const std::string& technique, double limit) {
+  constexpr const MetricInfo& rmse = metricInfo(&Metrics::rmse);
+  const Row* newest =
+      quickest(table.rows, technique, rmse, limit, [&](const Row& row) { return !isOutdated(row, table); });
+  return newest != nullptr ? newest : quickest(table.rows, technique, rmse, limit);
+}
+
 EqualError atEqualError(const Claim& claim, const Row& slow, const Found& fast) {
   if (claim.measure == ClaimMeasure::memory) return {"-: a claim of memory"};
   const std::string& technique = slow.what.technique;
@@ -118,7 +136,7 @@ EqualError atEqualError(const Claim& claim, const Row& slow, const Found& fast) 
   if (error.noise_floor && error.rmse < *error.noise_floor)
     return {"-: the reference's noise hides the errors"};
   constexpr const MetricInfo& rmse = metricInfo(&Metrics::rmse);
-  const Row* best = quickest(fast.table->rows, technique, rmse, error.rmse);
+  const Row* best = quickestAtEqualError(*fast.table, technique, error.rmse);
   if (best == nullptr) return {fmt::format("-: no row of {} reaches {}", technique, shownText(rmse, error))};
   const Pair pair = byFrames(claim.thesis, *best, *fast.row);
   return {fmt::format("{}: {}; differ in {}", pair.withTurns(), settingsName(*best),

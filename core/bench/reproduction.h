@@ -52,8 +52,9 @@ LIMN_API std::vector<Claim> readClaims(const std::filesystem::path& path);
 /// before the first dot) with the ratio measured at the suite's settings, the number of turns behind it and
 /// its interval, the errors of both sides, what they differ in, the ratio at equal error, the verdict, and
 /// where it was measured; the commands of the suites that answer a claim here, and of those that do not. A
-/// claim without its two rows, of one renderer and one machine, is "not measured"; of several such, the last
-/// count. Throws Error naming the rows when rows of several labels fit, since the claim is then ambiguous.
+/// claim without its two rows, of one renderer and one machine, is "not measured"; of several such, the
+/// newest count (Row::line). Throws Error naming the rows when rows of several labels fit, since the claim is
+/// then ambiguous.
 LIMN_API std::string reproductionMarkdown(std::span<const Claim> claims, std::span<const Row> rows);
 
 }  // namespace limn::bench

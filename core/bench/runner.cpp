@@ -159,6 +159,7 @@ class Run {
     for (std::size_t i = 0; i < cases_.size(); ++i) measure(i);
     for (int turn = 2; turn <= turns_; ++turn)
       for (std::size_t i = 0; i < cases_.size(); ++i) retime(i, turn);
+    summary_.shortened = shortenedRows(cases_, renderer_, results_.rows());
     return summary_;
   }
 
@@ -264,6 +265,15 @@ std::map<std::string, int> staleRows(std::span<const Case> cases, const std::str
     if (!reason.empty()) ++counts[reason];
   }
   return counts;
+}
+
+int shortenedRows(std::span<const Case> cases, const std::string& renderer, std::span<const Row> rows) {
+  std::map<std::string, const Row*> known;
+  for (const Row& row : rows) known.emplace(row.key, &row);
+  return static_cast<int>(std::ranges::count_if(cases, [&](const Case& c) {
+    const auto found = known.find(rowKey(c, renderer));
+    return found != known.end() && found->second->failure.empty() && !hasAllTurns(*found->second, c);
+  }));
 }
 
 std::vector<Case> unfinishedCases(std::span<const Case> cases, std::span<const Row> rows,

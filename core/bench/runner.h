@@ -64,6 +64,9 @@ struct Callbacks {
 
 struct Summary {
   int done = 0, skipped = 0, failed = 0;
+  int shortened = 0;  ///< shortenedRows(); they are among the others
+  /// Returns whether every case has its row with all of its turns.
+  bool complete() const { return failed == 0 && shortened == 0; }
 };
 
 /// Returns how many of the cases have a row that was measured with something else, by what has changed
@@ -71,6 +74,11 @@ struct Summary {
 LIMN_API std::map<std::string, int> staleRows(std::span<const Case> cases, const std::string& renderer,
                                               const ResultsFile& results,
                                               const std::function<Provenance(const Case&)>& provenance);
+
+/// Returns how many of the cases have a good row that is timed in fewer turns than they ask for, as a row is
+/// left by a further turn that failed or crashed.
+LIMN_API int shortenedRows(std::span<const Case> cases, const std::string& renderer,
+                           std::span<const Row> rows);
 
 /// Returns the cases for which no renderer has a row that is finished: good, measured with what `provenance`
 /// gives now, with the picture and within the masked share that the case asks for, and timed in all of its

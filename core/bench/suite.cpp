@@ -4,11 +4,12 @@
 #include <xxhash.h>
 
 #include <algorithm>
-#include <charconv>
 #include <map>
+#include <numeric>
 #include <set>
 
 #include "core/base/error.h"
+#include "core/base/text.h"
 #include "core/question/question_fields.h"
 
 namespace limn::bench {
@@ -67,18 +68,22 @@ std::string rowKey(const Case& c, std::string_view renderer) {
 }
 
 Shard parseShard(std::string_view text) {
-  Shard shard;
-  const std::size_t slash = text.find('/');
-  const auto number = [&](std::string_view part, int& value) {
-    const auto [end, error] = std::from_chars(part.data(), part.data() + part.size(), value);
-    return error == std::errc{} && end == part.data() + part.size();
-  };
-  if (slash == std::string_view::npos || !number(text.substr(0, slash), shard.index) ||
-      !number(text.substr(slash + 1), shard.count) || shard.count < 1 || shard.index < 1 ||
-      shard.index > shard.count) {
+  const std::size_t slash = std::min(text.find('/'), text.size());
+  const auto index = parseWhole<int>(text.substr(0, slash));
+  const auto count = slash < text.size() ? parseWhole<int>(text.substr(slash + 1)) : std::nullopt;
+  if (!index || !count || *index < 1 || *index > *count)
     throw UsageError(fmt::format("--shard '{}': i/n with 1 <= i <= n is accepted, such as 2/4", text));
-  }
-  return shard;
+  return {*index, *count};
+}
+
+std::vector<int> partsOf(std::span<const Case> cases, int count) {
+  std::map<std::string, int> questions;  // in order of appearance
+  std::vector<int> positions;
+  for (const Case& c : cases)
+    positions.push_back(questions.emplace(question(c), static_cast<int>(questions.size())).first->second);
+  if (static_cast<int>(questions.size()) < count) std::iota(positions.begin(), positions.end(), 0);
+  for (int& position : positions) position = position % count + 1;
+  return positions;
 }
 
 std::vector<Case> selectCases(std::span<const Case> cases, std::span<const std::string> filters,
@@ -91,14 +96,10 @@ std::vector<Case> selectCases(std::span<const Case> cases, std::span<const std::
       matching.push_back(c);
     }
   }
-  std::map<std::string, int> questions;  // in order of appearance
-  for (const Case& c : matching) questions.emplace(question(c), static_cast<int>(questions.size()));
-  const bool byQuestion = static_cast<int>(questions.size()) >= shard.count;
+  const std::vector<int> parts = partsOf(matching, shard.count);
   std::vector<Case> selected;
-  for (std::size_t i = 0; i < matching.size(); ++i) {
-    const int position = byQuestion ? questions[question(matching[i])] : static_cast<int>(i);
-    if (position % shard.count == shard.index - 1) selected.push_back(matching[i]);
-  }
+  for (std::size_t i = 0; i < matching.size(); ++i)
+    if (parts[i] == shard.index) selected.push_back(matching[i]);
   return selected;
 }
 

@@ -75,9 +75,11 @@ struct Shard {
 /// Parses "2/4". Throws UsageError for any other text.
 LIMN_API Shard parseShard(std::string_view text);
 
-/// Returns the cases whose label contains every filter, reduced to the shard's part of them. Questions are
-/// distributed round-robin, so that each reference is rendered once; with fewer questions than shards, cases
-/// are distributed.
+/// Returns the part of `count`, from 1, that each of the cases is in. Questions are distributed round-robin,
+/// so that each reference is rendered once; with fewer questions than parts, cases are distributed.
+LIMN_API std::vector<int> partsOf(std::span<const Case> cases, int count);
+
+/// Returns the cases whose label contains every filter, reduced to the shard's part of them (partsOf()).
 LIMN_API std::vector<Case> selectCases(std::span<const Case> cases, std::span<const std::string> filters,
                                        Shard shard = {});
 

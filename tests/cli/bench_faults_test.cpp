@@ -104,8 +104,10 @@ TEST_F(BenchFaults, ACrashInALaterTurnLeavesTheRow) {
   suite(technique("misbehaver", "way = 'once_there'") + shadows(), "turns = 2");
   environment_["LIMN_TEST_TRIGGER"] = folder_ / "out/results.jsonl";
   const Outcome first = bench();
-  EXPECT_EQ(first.status, 0) << first.err;
+  EXPECT_EQ(first.status, 1) << "the suite is not whole: " << first.err;
   EXPECT_THAT(first.err, HasSubstr("way=once_there: crashed: Aborted"));
+  EXPECT_THAT(first.out, HasSubstr("2 rows measured, 0 were there already, 0 failed"));
+  EXPECT_THAT(first.out, HasSubstr("1 rows lack turns, since a further turn of theirs failed"));
   EXPECT_THAT(contents(folder_ / "out/tables.md"), Not(HasSubstr("failed")));
   // As an earlier version left it: the failure behind the good row.
   nlohmann::json row;
@@ -123,6 +125,7 @@ TEST_F(BenchFaults, ACrashInALaterTurnLeavesTheRow) {
   const Outcome second = bench();
   EXPECT_EQ(second.status, 0) << second.err;
   EXPECT_THAT(second.out, HasSubstr("0 rows measured, 2 were there already, 0 failed"));
+  EXPECT_THAT(second.out, Not(HasSubstr("lack turns")));
   EXPECT_THAT(contents(folder_ / "out/tables.md"), Not(HasSubstr("failed")));
   text = std::istringstream(contents(folder_ / "out/results.jsonl"));
   int turns = 0;

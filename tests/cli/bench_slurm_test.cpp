@@ -178,6 +178,15 @@ TEST_F(BenchSlurm, FoldersMayHaveAPercentSignInTheirNames) {
   EXPECT_THAT(words, HasSubstr("\n" + (out / "slurm/part.sh").string() + "\n")) << "no pattern";
 }
 
+/// sbatch fills in no pattern where one is: all parts would write one log.
+TEST_F(BenchSlurm, FoldersWithABackslashInTheirNamesAreRefused) {
+  slurmThatWaits();
+  const fs::path out = folder_ / "a\\b";
+  expectRefused(limn({"bench", folder_ / "suite.toml", "--out", out, "--slurm"}, environment_), 2,
+                {"--out", "a\\b", "--slurm"});
+  EXPECT_FALSE(fs::exists(out));
+}
+
 /// A task whose program was killed is queued again three times, one whose program failed never.
 TEST_F(BenchSlurm, TasksAreQueuedAgainThreeTimes) {
   slurmThatWaits();

@@ -143,6 +143,7 @@ TEST(CommandLine, OptionsThatWouldDoNothingAreRefused) {
   refused("reference", {"--longest-edge", "0.1"});
   for (const char* ofPictures : {"--noise", "--aa", "--exposure"})
     refused("reference", {ofPictures, "1", "--at-vertices"});
+  refused("reference", {"--size", "32x24", "--at-vertices"});
 }
 
 TEST(CommandLine, FlickerComparesAnimationsWithTheTruth) {

@@ -102,5 +102,11 @@ TEST_F(Passes, OtherFoldersAndUnknownPassesAreRefused) {
   expectRefused(passes({}, "pcs"), 2, {"'pcs'"});
 }
 
+TEST_F(Passes, AFolderThatCannotBeMadeIsRefusedBeforeAnythingIsCompiled) {
+  std::ofstream(folder_ / "mine.txt") << "mine";
+  out_ = folder_ / "mine.txt/new/passes";
+  expectRefused(passes(), 1, {"mine.txt/new/passes: cannot be written", "mine.txt is a file"});
+}
+
 }  // namespace
 }  // namespace limn::test

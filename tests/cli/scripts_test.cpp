@@ -56,6 +56,7 @@ TEST_F(Scripts, TheGallerySaysThePicturesCommands) {
                                  "--out", caller_ / name});
   ASSERT_EQ(rendered.status, 0) << rendered.err;
   std::ofstream(caller_ / "other.program.png") << "no picture of limn's";
+  std::ofstream(caller_ / "50%25 #1.program.png") << "nor this";
   const Outcome outcome =
       run({"/usr/bin/env", "python3", "-B", std::string(kSourceDir) + "/scripts/gallery", caller_});
   ASSERT_EQ(outcome.status, 0) << outcome.err;
@@ -63,6 +64,7 @@ TEST_F(Scripts, TheGallerySaysThePicturesCommands) {
   EXPECT_THAT(page, testing::HasSubstr("<figcaption>cornell_box<code>limn render cornell_box --technique "
                                        "hard_shadow_map --size 16x12 --out "));
   EXPECT_THAT(page, testing::HasSubstr("<figcaption>other</figcaption>"));
+  EXPECT_THAT(page, testing::HasSubstr("<img src=\"50%2525%20%231.program.png\" "));
 }
 
 TEST_F(Scripts, GpuRunTakesSuitesOfTheFolderWhereItIsCalled) {

@@ -2,6 +2,7 @@
 #include <fstream>
 #include <map>
 #include <nlohmann/json.hpp>
+#include <sstream>
 
 #include "tests/cli/limn_program.h"
 
@@ -84,12 +85,66 @@ TEST_F(TuneCommand, LargePicturesAreTriedInSmallOnes) {
                                 "--max-error", "rmse=1", "--out", folder_ / "out", "--json"});
   ASSERT_EQ(outcome.status, 0) << outcome.err;
   std::map<std::string, int> tried;  // rows with the warm-up of tries, by size
+  std::vector<std::string> sizes;
   std::ifstream rows(folder_ / "out/results.jsonl");
-  for (std::string line; std::getline(rows, line);)
-    if (const auto row = nlohmann::json::parse(line); row["warmup"] == 1) ++tried[row["size"].dump()];
+  for (std::string line; std::getline(rows, line);) {
+    const auto row = nlohmann::json::parse(line);
+    sizes.push_back(row["size"].dump());
+    if (row["warmup"] == 1) ++tried[sizes.back()];
+  }
+  EXPECT_EQ(sizes.front(), "[256,192]") << "with whose table the page begins";
   EXPECT_GT(tried["[128,96]"], 1);
   EXPECT_EQ(tried["[256,192]"], 1);
   EXPECT_GT(nlohmann::json::parse(outcome.out)["answer"]["ms"], 0);
+}
+
+/// The file keeps the good row of elsewhere, whose times say nothing of this machine.
+TEST_F(TuneCommand, WhatFailsHereIsNoAnswerThoughAnotherMachineMeasuredIt) {
+  const std::map<std::string, std::string> environment = {
+      {"LIMN_TECHNIQUE_PATH", std::string(kBinaryDir) + "/tests/misbehaver"},
+      {"LIMN_TEST_TRIGGER", folder_ / "trigger"}};
+  const auto question = command({"--light", "#0", "--techniques", "misbehaver", "--set",
+                                 "misbehaver.way=once_there", "--max-error", "rmse=10"});
+  const Outcome first = limn(question, environment);
+  ASSERT_EQ(first.status, 0) << first.err;
+  const fs::path file = folder_ / "out/results.jsonl";
+  std::string rows;
+  std::istringstream lines(contents(file));
+  for (std::string line; std::getline(lines, line);) {
+    auto row = nlohmann::ordered_json::parse(line);
+    row["stats"]["machine"] = "another machine";
+    rows += row.dump() + "\n";
+  }
+  std::ofstream(file) << rows;
+  std::ofstream(folder_ / "trigger") << "now";
+  const Outcome second = limn(question, environment);
+  EXPECT_EQ(second.status, 1) << second.out;
+  EXPECT_THAT(second.err, testing::AllOf(testing::HasSubstr("crashed: Aborted"),
+                                         testing::HasSubstr("no setting could be measured"),
+                                         testing::HasSubstr("it failed here, though not elsewhere")));
+}
+
+/// As under a black reference: predictions from infinite errors would order settings at random.
+TEST_F(TuneCommand, InfiniteErrorsTellNoSettingsApart) {
+  const std::vector<std::string> question = {
+      "--techniques", "hard_shadow_map", "--set",  "hard_shadow_map.shadow_map_size=64", "--max-ms",
+      "1e6",          "--metric",        "rel_mse"};
+  const Outcome first = tune(question);
+  ASSERT_EQ(first.status, 0) << first.err;
+  const fs::path file = folder_ / "out/results.jsonl";
+  std::string rows;
+  std::istringstream lines(contents(file));
+  for (std::string line; std::getline(lines, line);) {
+    auto row = nlohmann::ordered_json::parse(line);
+    row["error"]["rel_mse"] = nullptr;
+    rows += row.dump() + "\n";
+  }
+  std::ofstream(file) << rows;
+  const Outcome second = tune(question);
+  EXPECT_EQ(second.status, 1) << second.out;
+  EXPECT_THAT(second.err, testing::AllOf(testing::HasSubstr("the relative MSE of "),
+                                         testing::HasSubstr(" is infinite, as under a black reference"),
+                                         testing::HasSubstr("use rmse\n")));
 }
 
 TEST_F(TuneCommand, SaysWhatComesNearestToALimitThatNothingKeeps) {

@@ -16,7 +16,8 @@ if os.geteuid() != 0:
     sys.exit(SKIPPED)
 
 out = fresh("package")
-run("cpack", "-G", "DEB", "-B", out, cwd=options.build)
+# Compressed as dpkg takes it, too, in a tenth of the time.
+run("cpack", "-G", "DEB", "-D", "CPACK_DEBIAN_COMPRESSION_TYPE=gzip", "-B", out, cwd=options.build)
 (package,) = out.glob("*.deb")
 field = lambda name: run("dpkg-deb", "-f", package, name)[0].strip()
 check(field("Package") == "limn" and field("Version"), "the package has no name or no version")

@@ -185,6 +185,17 @@ def answers_for_a_budget(browser):
     limn(*shown.replace("picture.png", str(out / "command.png")).split()[1:])
     check((out / "command.png").is_file(), "the command does not render")
 
+    noisy = [json.loads(json.dumps(row)) for row in rows]
+    for row in noisy:
+        row["penumbra"]["noise_floor"] = 1
+    with reported(noisy):
+        browser.open(page)
+        browser.evaluate("""(s => { s.value = 'error'; s.dispatchEvent(new Event('change')); })(
+            [...document.querySelectorAll('.take .chooser')].find(c => c.firstChild.textContent === 'Budget').querySelector('select'))""")
+        slide(browser, ".take", 0)
+        text = browser.evaluate("document.querySelector('.take p').textContent")
+        check(f"Take {setting(min(rows, key=time))} " in text and "<1" in text, f"of errors below the noise: {text}")
+
     others = [json.loads(json.dumps(row)) for row in rows]
     for row in others:
         row.update(scene="elsewhere", key=row["key"] + "e")
@@ -206,6 +217,17 @@ def answers_for_a_budget(browser):
         slide(browser, "#take", 100)
         lines = browser.evaluate("[...document.querySelectorAll('#take table')[0].tBodies[0].rows].map(r => r.cells[1].textContent)")
         check(lines == [setting(min(rows, key=time))] * 2, f"of any error {lines}")
+
+    lost = [json.loads(json.dumps(row)) for row in rows]
+    for row in lost:
+        row.update(scene="lost", key=row["key"] + "l", failure="crashed", renderer=row["stats"]["renderer"])
+    with reported([*rows, *others, *lost]):
+        browser.open(page)
+        slide(browser, "#take", 100)
+        said = browser.evaluate("document.querySelector('#take p[aria-live]').textContent")
+        check("2 of 3 scenes" in said, f"of a scene in which every row failed is said {said}")
+        lines = browser.evaluate("[...document.querySelectorAll('#take table')[0].tBodies[0].rows].map(r => r.cells[1].textContent)")
+        check("no row has both a time and this error" in lines, f"over three scenes {lines}")
 
 
 def enlarges_and_flips(browser):
@@ -388,6 +410,7 @@ def keeps_machines_and_programs_apart(browser):
     for row in others:
         row["stats"]["machine"] = "b"
     rows[0]["provenance"]["program"] = "another"
+    rows[0]["stats"]["frame_ms"].update(median=0.01, q1=0.01, q3=0.01)  # the quickest
     with reported([*rows, *others]):
         browser.open(page)
         shown = browser.evaluate(speeds)
@@ -395,6 +418,16 @@ def keeps_machines_and_programs_apart(browser):
         marked = browser.evaluate("[...document.querySelectorAll('#subject-0 table tbody tr[data-key] th')].map(h => h.textContent)")
         check(len(marked) == POINTS and [name for name in marked if "†" in name] == ["Hard shadows †"], f"marked are {marked}")
         check("† measured with another version" in browser.evaluate("document.getElementById('results').textContent"), "the mark is not explained")
+        slide(browser, ".take", 0)
+        taken = browser.evaluate("document.querySelector('.take').textContent")
+        check("Take Hard shadows †" in taken and "† measured with another version" in taken, f"what to take has no mark: {taken}")
+    for part in ("error", "penumbra"):
+        rows[0][part]["rmse"] = 1e-9  # the best, too
+    with reported([*rows, *others]):
+        browser.open(page)
+        slide(browser, ".take", 100)
+        taken = browser.evaluate("document.querySelector('.take p').textContent")
+        check(taken.startswith("Take ") and "†" not in taken, f"an outdated row comes before the newest ones: {taken}")
 
 
 def tells_references_apart(browser):

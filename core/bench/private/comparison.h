@@ -2,6 +2,7 @@
 // baseline's technique with the fewest samples whose error is not above the row's.
 #pragma once
 
+#include <functional>
 #include <optional>
 #include <span>
 #include <string>
@@ -63,9 +64,9 @@ LIMN_API std::string ratioText(const Ratio& ratio, int digits = 2);
 LIMN_API std::string measuredText(const Ratio& ratio);
 
 /// Returns the quickest timed row of the technique whose boundedError() is not above `limit` (in the
-/// penumbra, where that is known); null if there is none.
+/// penumbra, where that is known); null if there is none. Rows count that `counts` accepts; empty: all do.
 LIMN_API const Row* quickest(std::span<const Row> rows, const std::string& technique, const MetricInfo& error,
-                             std::optional<double> limit);
+                             std::optional<double> limit, const std::function<bool(const Row&)>& counts = {});
 
 /// Holds how long the reference's own method takes to reach the row's error, with as many cores.
 struct ReferenceTime {

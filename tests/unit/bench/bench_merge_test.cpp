@@ -1,5 +1,6 @@
 #include <gtest/gtest.h>
 
+#include <array>
 #include <filesystem>
 
 #include "core/base/file.h"
@@ -30,9 +31,9 @@ TEST_F(BenchMerge, FoldersAreMerged) {
   ResultsFile(a / "results.jsonl").append(both);
   ResultsFile(a / "results.jsonl").append(failed);
   for (const Row& row : {both, good, stray}) ResultsFile(b / "results.jsonl").append(row);
-  EXPECT_EQ(mergeResults(a, all, {}), 2);
-  EXPECT_EQ(mergeResults(b, all, {}), 2);
-  EXPECT_EQ(mergeResults(a, all, {}) + mergeResults(b, all, {}), 0) << "merging again adds nothing";
+  EXPECT_EQ(mergeResults(std::array{a}, all, {}), 2);
+  EXPECT_EQ(mergeResults(std::array{b}, all, {}), 2);
+  EXPECT_EQ(mergeResults(std::array{a, b}, all, {}), 0) << "merging again adds nothing";
   const std::vector<Row> rows = readRows(all / "results.jsonl");
   ASSERT_EQ(rows.size(), 3u);
   for (const Row& row : rows) EXPECT_EQ(row.failure, "");
@@ -65,13 +66,14 @@ TEST_F(BenchMerge, MergingTakesWhatIsValidNowAndOfMoreTurns) {
                                        make("new, failed", now, 1, "lost"), make("new, one turn", now, 1),
                                        make("new, 2 turns", now, 2)};
   const auto merge = [&](const fs::path& part, const fs::path& into) {
-    return mergeResults(part, into, [&](const Case&) { return now; });
+    return mergeResults(std::array{part}, into, [&](const Case&) { return now; });
   };
-  const fs::path up = folder_ / "up", down = folder_ / "down";
-  for (const fs::path& folder : {up, down}) fs::create_directories(folder);
+  const fs::path up = folder_ / "up", down = folder_ / "down", together = folder_ / "together";
+  for (const fs::path& folder : {up, down, together}) fs::create_directories(folder);
   for (const fs::path& part : parts) EXPECT_EQ(merge(part, up), 1) << part;
   EXPECT_EQ(merge(parts.back(), down), 1);
-  for (const fs::path& folder : {up, down}) {
+  EXPECT_EQ(mergeResults(parts, together, [&](const Case&) { return now; }), 5);
+  for (const fs::path& folder : {up, down, together}) {
     for (const fs::path& part : parts) EXPECT_EQ(merge(part, folder), 0) << part;
     const std::vector<Row> rows = readRows(folder / "results.jsonl");
     ASSERT_EQ(rows.size(), 1u);

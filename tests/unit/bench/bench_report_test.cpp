@@ -180,6 +180,17 @@ TEST_F(BenchReport, FailedRowsDoNotSayWhetherTheRendererIsSoftware) {
   EXPECT_EQ(table["software"], true);
 }
 
+/// What to take over all scenes counts those that are asked and measured alike.
+TEST_F(BenchReport, AWhollyFailedSceneIsAskedAsTheOthersOfItsRenderer) {
+  Row failed = row("pcss", 0.5f);
+  failed.what.scene = "robot";
+  failed.failure = "lost";
+  failed.cost.software = false;
+  const Json page = data({row("pcss", 0.5f), failed});
+  ASSERT_EQ(page["tables"].size(), 2u);
+  EXPECT_EQ(page["tables"][1]["measured"], page["tables"][0]["measured"]);
+}
+
 TEST_F(BenchReport, TextsCannotLeaveTheScript) {
   Row bad = row("pcss", 0.5f);
   bad.what.scene = bad.what.title = bad.cost.renderer = bad.cost.machine = kScript;

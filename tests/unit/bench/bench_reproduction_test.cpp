@@ -119,6 +119,25 @@ TEST(Reproduction, TimesThatTheRowsLackAreNotMeasured) {
   EXPECT_THAT(line({row("pcss", 30, "samples"), untimed}), HasSubstr("| not timed | - |"));
 }
 
+/// A suite with `frames = 0` may have rows of the same labels, measured later.
+TEST(Reproduction, UntimedRowsStandBackBehindTimedOnes) {
+  const auto at = [](Row row, std::size_t line, bool timed) {
+    row.line = line;
+    if (timed) return row;
+    row.cost.frameMs = {};
+    row.what.reference.spp = 64;  // a table of its own
+    return row;
+  };
+  const Row slow = row("pcss", 30, "samples"), fast = row("vssm", 2);
+  const std::vector<Row> rows = {at(slow, 1, true), at(fast, 2, true), at(slow, 3, false),
+                                 at(fast, 4, false)};
+  EXPECT_THAT(line(rows), HasSubstr("| 15.00 (15.00 to 15.00) |"));
+  std::vector<Row> bytes = rows;
+  bytes[2].cost.memoryBytes *= 20;
+  EXPECT_THAT(line(bytes, changed("\"frame\"", "\"memory\"")), HasSubstr("| memory | 14.80 | 20.00 | - |"))
+      << "untimed rows have memory";
+}
+
 TEST(Reproduction, AmbiguousClaimsAreAnError) {
   const Row rows[] = {row("pcss", 30, "samples"), row("pcss", 30, "other"), row("vssm", 1)};
   EXPECT_THROW(reproductionMarkdown(parseClaims(kClaim, "c"), rows), Error);
@@ -141,6 +160,20 @@ TEST(Reproduction, BothSidesAreOfOneRendererAndMachine) {
     EXPECT_THAT(line(rows), HasSubstr("| 15.00 (15.00 to 15.00) |")) << "one side of another renderer";
   EXPECT_THAT(line({slowHere, fastHere, slowGpu, fastGpu}), HasSubstr("| 8.00 (8.00 to 8.00) |"))
       << "the last";
+}
+
+/// A suite whose reference was changed and changed back: its first rows were measured again after the others.
+TEST(Reproduction, OfSeveralReferencesTheNewestRowsCount) {
+  const auto at = [](Row row, int spp, std::size_t line) {
+    row.what.reference.spp = spp;
+    row.line = line;
+    return row;
+  };
+  const Row slow = row("pcss", 30, "samples"), fast = row("vssm", 2), faster = row("vssm", 1);
+  EXPECT_THAT(line({at(slow, 64, 5), at(fast, 64, 6), at(slow, 256, 3), at(faster, 256, 4)}),
+              HasSubstr("| 15.00 (15.00 to 15.00) |"));
+  EXPECT_THAT(line({at(slow, 64, 1), at(fast, 64, 2), at(slow, 256, 3), at(faster, 256, 4)}),
+              HasSubstr("| 30.00 (30.00 to 30.00) |"));
 }
 
 TEST(Reproduction, BeginningAndEndOfALabelCanBeMeant) {
@@ -200,6 +233,21 @@ TEST(Reproduction, EqualErrorTakesTheQuickestRowThatErrsNoMore) {
   once.cost.frameMs.turns = 1;
   EXPECT_THAT(with(once), HasSubstr("| refused: n = 1: pcss taps=1"));
   EXPECT_THAT(with(once), HasSubstr("| not measured |"));
+}
+
+TEST(Reproduction, EqualErrorTakesRowsOfTheNewestVersionFirst) {
+  const auto by = [](Row row, const std::string& program, std::size_t line) {
+    row.provenance.program = program;
+    row.line = line;
+    return row;
+  };
+  const Row slow = by(row("pcss", 30, "samples", 0.1), "new", 3),
+            fast = by(row("vssm", 2, {}, 0.15), "new", 4), old = by(row("pcss", 3, "taps", 0.15), "old", 1);
+  EXPECT_THAT(line({old, by(row("pcss", 4, "cells", 0.15), "new", 2), slow, fast}, kSamples),
+              HasSubstr("| 2.00 (2.00 to 2.00), n = 3: pcss cells=1"));
+  const Row worse = by(row("pcss", 30, "samples", 0.2), "new", 3);
+  EXPECT_THAT(line({old, worse, fast}, kSamples), HasSubstr("| 1.50 (1.50 to 1.50), n = 3: pcss taps=1"))
+      << "the newest version has none";
 }
 
 TEST(Reproduction, EqualErrorIsThatOfThePenumbraWhereItIsKnown) {

@@ -263,8 +263,14 @@ TEST_F(BenchRunner, WhateverACaseThrowsLosesItsOwnRowOnly) {
     return time(c);
   };
   ResultsFile results(path_);
-  EXPECT_EQ(runCases(cases, "x", results, callbacks).done, 5);
+  const Summary summary = runCases(cases, "x", results, callbacks);
+  EXPECT_EQ(summary.done, 5);
+  EXPECT_EQ(summary.failed, 0);
+  EXPECT_EQ(summary.shortened, 4) << "which the exit status tells";
   for (const Row& row : results.rows()) EXPECT_EQ(row.failure, "");
+  const Summary again = runCases(cases, "x", results, fakes.callbacks());
+  EXPECT_EQ(again.skipped, 5);
+  EXPECT_EQ(again.shortened, 0) << "the turns are made up for";
 }
 
 }  // namespace

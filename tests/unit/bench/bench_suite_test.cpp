@@ -230,6 +230,20 @@ TEST(BenchSuite, ShardsPartitionTheCases) {
   for (const std::string& q : first) EXPECT_FALSE(second.contains(q));
 }
 
+/// Whoever hands out the parts of a suite knows what is in them without making each.
+TEST(BenchSuite, PartsAreThoseOfTheShards) {
+  const Suite suite = parseSuite(kSuite, "s.toml");
+  for (const int count : {1, 2, 3, 40}) {
+    const std::vector<int> parts = partsOf(suite.cases, count);
+    for (int index = 1; index <= count; ++index) {
+      std::vector<Case> inside;
+      for (std::size_t i = 0; i < parts.size(); ++i)
+        if (parts[i] == index) inside.push_back(suite.cases[i]);
+      EXPECT_EQ(inside, selectCases(suite.cases, {}, {index, count})) << index << " of " << count;
+    }
+  }
+}
+
 TEST(BenchSuite, ParsesShards) {
   EXPECT_EQ(parseShard("2/4").index, 2);
   EXPECT_EQ(parseShard("2/4").count, 4);
