@@ -113,6 +113,7 @@ std::vector<std::string> tuneArguments(const TuneOrder& order) {
   if (order.metric != usual.metric) add({"--metric", std::string(order.metric->key)});
   if (order.maskedShare != usual.maskedShare)
     add({"--max-masked-share", fmt::format("{:.4g}", order.maskedShare)});
+  if (order.device >= 0) add({"--device", fmt::format("{}", order.device)});
   add({"--steps", fmt::format("{}", order.steps), "--max-ms", fmt::format("{:.4g}", order.ms), "--out",
        order.folder});
   return words;

@@ -63,6 +63,7 @@ struct TuneOrder {
   const MetricInfo* metric = &metricInfo(&Metrics::rmse);  ///< that is to be best
   double maskedShare = CompareOptions().maxMaskedShare;    ///< of the pixels that may be left out
   std::string folder;
+  int device = -1;  ///< as in ContextOptions
 
   /// Returns what is asked of techniques for a picture that the window shows: of the whole picture only the
   /// part that they compete for, direct light, or the visibility of its only light.

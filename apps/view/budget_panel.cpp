@@ -2,6 +2,7 @@
 // started here.
 #include <fmt/format.h>
 #include <imgui.h>
+#include <imgui_stdlib.h>
 
 #include <algorithm>
 #include <chrono>
@@ -48,7 +49,8 @@ TuneOrder ViewerWindow::tuneOrder() const {
           .steps = tuneSteps_,
           .metric = tuneMetric_,
           .maskedShare = static_cast<double>(tuneMaskedPercent_) / 100,
-          .folder = budgetText_};
+          .folder = budgetText_,
+          .device = options_.device};
 }
 
 void ViewerWindow::startTune() {
@@ -77,7 +79,7 @@ void ViewerWindow::budgetNews() {
       sayInTerminal(tuneProblem_);
     }
     if (!cancelled && shown) {
-      setText(budgetText_, tuned_.folder);
+      budgetText_ = tuned_.folder;
       readBudget(tuned_.question);
     }
   }
@@ -122,8 +124,7 @@ void ViewerWindow::budgetRows() {
       "into it");
   const float button = scaled(52);
   ImGui::SetNextItemWidth(-button);
-  bool read =
-      ImGui::InputText("##folder", budgetText_, sizeof budgetText_, ImGuiInputTextFlags_EnterReturnsTrue);
+  bool read = ImGui::InputText("##folder", &budgetText_, ImGuiInputTextFlags_EnterReturnsTrue);
   ImGui::SameLine();
   read |= ImGui::Button("Read", {-1, 0});
   if (read) {
@@ -148,7 +149,7 @@ void ViewerWindow::budgetRows() {
   ImGui::SliderFloat("##ms", &budgetMs_, 0.1f, 1000, "%.4g ms", ImGuiSliderFlags_Logarithmic);
   nameCell("among",
            "Techniques that a search chooses from, separated by commas; empty: all that answer the term");
-  ImGui::InputTextWithHint("##among", "all that answer the term", tuneTechniques_, sizeof tuneTechniques_);
+  ImGui::InputTextWithHint("##among", "all that answer the term", &tuneTechniques_);
   nameCell("steps", "How many steps from each parameter's default a search tries in each direction");
   ImGui::SliderInt("##steps", &tuneSteps_, 0, 4, "%d", ImGuiSliderFlags_AlwaysClamp);
   nameCell("best by", tuneMetric_->help.data());

@@ -14,7 +14,7 @@ bool same(const Edit& a, const Edit& b) {
   scene.height = b.state.scene.height;
   return scene == b.state.scene && a.state.tone == b.state.tone &&
          a.state.automaticExposure == b.state.automaticExposure &&
-         same(a.state.techniques, b.state.techniques) && same(a.others, b.others);
+         same(a.state.techniques, b.state.techniques) && same(a.others, b.others) && a.step == b.step;
 }
 
 void EditHistory::restart(Edit present) {
@@ -40,6 +40,15 @@ void EditHistory::forget(const SceneQuestion& question) {
     if (!gone(edits_[i])) ++left;
   std::erase_if(edits_, gone);
   present_ = std::max<size_t>(left, 1) - 1;
+}
+
+void EditHistory::fillOthers(const std::vector<render::TechniqueUse>& others) {
+  for (Edit& edit : edits_)
+    if (edit.others.empty()) edit.others = others;
+}
+
+void EditHistory::recount(const glm::dvec3& from, const glm::dvec3& to) {
+  for (Edit& edit : edits_) edit.orbit.recount(from, to);
 }
 
 const Edit* EditHistory::undo() {

@@ -14,6 +14,7 @@ struct Edit {
   ViewState state;
   Orbit orbit;
   std::vector<render::TechniqueUse> others;  ///< that are compared with
+  std::size_t step = 0;                      ///< of the guide
 };
 /// Says whether two edits differ in nothing but the size of the picture.
 bool same(const Edit& a, const Edit& b);
@@ -28,6 +29,11 @@ class EditHistory {
   /// Forgets the edits whose scene is to be opened as `question` says, which turned out to be impossible. The
   /// edit before the present one takes its place if it is among them.
   void forget(const SceneQuestion& question);
+  /// Gives the edits that have no techniques to compare with these, which nobody chose: undo does not take
+  /// them back.
+  void fillOthers(const std::vector<render::TechniqueUse>& others);
+  /// Counts the edits' orbits from another origin, as Orbit::recount() does.
+  void recount(const glm::dvec3& from, const glm::dvec3& to);
   /// Returns the edit before the present one, which it makes the present one; null where there is none.
   const Edit* undo();
   /// Returns the edit that was undone last, which it makes the present one; null where there is none.

@@ -9,8 +9,12 @@ namespace {
 
 namespace fs = std::filesystem;
 
+/// Other systems write MODEL.GLB, which is read by what it holds.
 bool isScene(const fs::path& file) {
-  return file.extension() == ".gltf" || file.extension() == ".glb";
+  std::string extension = file.extension().string();
+  for (char& c : extension)
+    if (c >= 'A' && c <= 'Z') c = static_cast<char>(c - 'A' + 'a');
+  return extension == ".gltf" || extension == ".glb";
 }
 
 }  // namespace

@@ -8,7 +8,7 @@
 namespace limn::app {
 namespace {
 
-constexpr float kArmPixels = 90;                      // of an axis
+constexpr float kArmPixels = 90;  // of an axis; before ScreenCamera::handleScale, as all pixels
 constexpr float kPlaneFrom = 0.3f, kPlaneTo = 0.55f;  // parts of it
 constexpr float kGrabPixels = 7;
 constexpr int kRingCorners = 48;
@@ -95,7 +95,7 @@ std::vector<GizmoHandle> handlesOf(GizmoMode mode) {
 
 std::vector<glm::vec3> outlineOf(const ScreenCamera& screen, const glm::vec3& centre,
                                  const GizmoHandle& handle) {
-  const float arm = screen.metres(kArmPixels, centre);
+  const float arm = screen.metres(kArmPixels * screen.handleScale, centre);
   const glm::vec3 u = arm * unit((handle.axis + 1) % 3), v = arm * unit((handle.axis + 2) % 3);
   switch (handle.kind) {
     case GizmoHandle::Kind::axis:
@@ -117,7 +117,7 @@ std::vector<glm::vec3> outlineOf(const ScreenCamera& screen, const glm::vec3& ce
 std::optional<GizmoHandle> handleAt(const ScreenCamera& screen, const glm::vec3& centre, GizmoMode mode,
                                     const glm::vec2& mouse) {
   std::optional<GizmoHandle> found;
-  float nearest = kGrabPixels;
+  float nearest = kGrabPixels * screen.handleScale;
   for (const GizmoHandle& handle : handlesOf(mode)) {
     std::vector<glm::vec2> pixels;
     for (const glm::vec3& corner : outlineOf(screen, centre, handle))

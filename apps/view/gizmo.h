@@ -16,6 +16,7 @@ namespace limn::app {
 struct ScreenCamera {
   scene::CameraPose camera;
   glm::vec2 corner{0}, size{1};
+  float handleScale = 1;  ///< of handles, which have more pixels where text has
 
   /// Returns the pixel of a point; nothing for points behind the camera.
   std::optional<glm::vec2> pixel(const glm::vec3& world) const;

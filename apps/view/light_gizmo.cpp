@@ -10,7 +10,7 @@
 namespace limn::app {
 namespace {
 
-constexpr float kMarkPixels = 7;
+constexpr float kMarkPixels = 7;                                         // before scaled(), as all pixels
 constexpr ImU32 kAxisColours[3] = {0xff5a5af0, 0xff5ad05a, 0xfff0965a};  // red, green, blue
 constexpr ImU32 kHeldColour = 0xff40e0ff, kMarkColour = 0xff80e8ff;
 
@@ -41,12 +41,12 @@ void drawOutline(const ScreenCamera& screen, const glm::vec3& centre, const Gizm
   const int count = static_cast<int>(pixels.size());
   if (handle.kind == GizmoHandle::Kind::plane) {
     draw.AddConvexPolyFilled(pixels.data(), count, (colour & 0x00ffffff) | 0x60000000);
-    draw.AddPolyline(pixels.data(), count, colour, ImDrawFlags_Closed, 1);
+    draw.AddPolyline(pixels.data(), count, colour, ImDrawFlags_Closed, screen.handleScale);
   } else if (handle.kind == GizmoHandle::Kind::ring) {
-    draw.AddPolyline(pixels.data(), count, colour, ImDrawFlags_Closed, 2.5f);
+    draw.AddPolyline(pixels.data(), count, colour, ImDrawFlags_Closed, 2.5f * screen.handleScale);
   } else {
-    draw.AddLine(pixels[0], pixels[1], colour, 2.5f);
-    draw.AddCircleFilled(pixels[1], 4.5f, colour);
+    draw.AddLine(pixels[0], pixels[1], colour, 2.5f * screen.handleScale);
+    draw.AddCircleFilled(pixels[1], 4.5f * screen.handleScale, colour);
   }
 }
 
@@ -55,7 +55,7 @@ void drawShape(const ScreenCamera& screen, const LightFacts& light, const glm::v
   ImDrawList& draw = *ImGui::GetWindowDrawList();
   const auto line = [&](const glm::vec3& a, const glm::vec3& b) {
     const auto from = screen.pixel(a), to = screen.pixel(b);
-    if (from && to) draw.AddLine(im(*from), im(*to), kMarkColour, 1.5f);
+    if (from && to) draw.AddLine(im(*from), im(*to), kMarkColour, 1.5f * screen.handleScale);
   };
   const glsl::Light& l = light.light;
   if (l.type == glsl::light_rectangle) {
@@ -63,13 +63,14 @@ void drawShape(const ScreenCamera& screen, const LightFacts& light, const glm::v
     const glm::vec3 corners[4] = {centre - u - v, centre + u - v, centre + u + v, centre - u + v};
     for (int i = 0; i < 4; ++i) line(corners[i], corners[(i + 1) % 4]);
   }
-  if (l.type != glsl::light_point) line(centre, centre + screen.metres(45, centre) * l.direction);
+  if (l.type != glsl::light_point)
+    line(centre, centre + screen.metres(45 * screen.handleScale, centre) * l.direction);
 }
 
 }  // namespace
 
 ScreenCamera ViewerWindow::screen() const {
-  return {facts_->camera, corner_, glm::vec2(area_)};
+  return {facts_->camera, corner_, glm::vec2(area_), scaled(100) / 100};
 }
 
 void ViewerWindow::chooseLight(int light) {
@@ -96,7 +97,8 @@ void ViewerWindow::drawLights() {
     const glm::vec3 centre = placeOf(light, *facts_->scene);
     const auto pixel = camera.pixel(centre);
     if (!pixel) continue;
-    draw.AddCircle(im(*pixel), kMarkPixels, kMarkColour, 0, chosen ? 3.f : 1.5f);
+    draw.AddCircle(im(*pixel), scaled(kMarkPixels), kMarkColour, 0,
+                   (chosen ? 3.f : 1.5f) * camera.handleScale);
     if (!chosen) continue;
     drawShape(camera, light, centre);
     const GizmoMode mode = isDirectional(light) ? GizmoMode::turn : gizmoMode_;
@@ -110,6 +112,8 @@ bool ViewerWindow::dragLight() {
   const ImGuiIO& io = ImGui::GetIO();
   const glm::vec2 mouse(io.MousePos.x, io.MousePos.y);
   const auto count = static_cast<int>(facts_->lights.size());
+  markHeld_ = markHeld_ && io.MouseDown[0];
+  if (markHeld_) return true;  // a hand that shakes turns no camera
   if (!lightPanelOpen_ || !facts_->scene || chosenLight_ >= count) return false;
   const ScreenCamera camera = screen();
   if (drag_) {
@@ -141,9 +145,11 @@ bool ViewerWindow::dragLight() {
   for (int i = 0; i < count; ++i) {
     const LightFacts& light = facts_->lights[static_cast<size_t>(i)];
     const auto pixel = camera.pixel(light.light.position);
-    if (!light.editable || isDirectional(light) || !pixel || glm::distance(*pixel, mouse) > kMarkPixels)
+    if (!light.editable || isDirectional(light) || !pixel ||
+        glm::distance(*pixel, mouse) > scaled(kMarkPixels))
       continue;
     chooseLight(i);
+    markHeld_ = true;
     return true;
   }
   return false;

@@ -3,6 +3,7 @@
 #include <imgui.h>
 
 #include <algorithm>
+#include <cmath>
 #include <utility>
 
 #include "apps/view/viewer_style.h"
@@ -32,6 +33,13 @@ const char* kindOf(const LightFacts& light) {
   }
 }
 
+/// A number of metres with the digits that show a thousandth of the scene, to which ImGui rounds what is
+/// dragged.
+std::string lengthFormat(float radius) {
+  const int digits = 3 - static_cast<int>(std::floor(std::log10(std::max(radius, 1e-6f))));
+  return fmt::format("%.{}f", std::clamp(digits, 3, 9));
+}
+
 /// Rows of the editor; true if the edit changed.
 bool lightSize(const LightFacts& light, float radius, session::LightEdit& edit) {
   const bool directional = light.light.type == glsl::light_directional;
@@ -39,9 +47,10 @@ bool lightSize(const LightFacts& light, float radius, session::LightEdit& edit) 
       directional ? "angle, rad" : "size, m",
       directional ? "Angular diameter" : "Sides; a light that had none becomes a rectangle that faces -z");
   glm::vec2 size = edit.size.value_or(*light.now.size);
-  const bool resized = directional ? ImGui::DragFloat("##size", &size.x, 0.001f, 1e-4f, 1, "%.4f", kClamped)
-                                   : ImGui::DragFloat2("##size", &size.x, 0.002f * radius, 1e-4f,
-                                                       kMostInSetting, "%.3f", kClamped);
+  const bool resized = directional
+                           ? ImGui::DragFloat("##size", &size.x, 0.001f, 1e-4f, 1, "%.4f", kClamped)
+                           : ImGui::DragFloat2("##size", &size.x, 0.002f * radius, 1e-4f, kMostInSetting,
+                                               lengthFormat(radius).c_str(), kClamped);
   if (!resized) return false;
   const bool square = directional || (!edit.size && *light.now.size == glm::vec2(0));
   edit.size =
@@ -95,7 +104,7 @@ void ViewerWindow::lightPanel() {
     endRows();
   }
   if (lights.empty()) {
-    ImGui::TextDisabled(facts_->pictures > 0 ? "the scene has no light" : "known with the first picture");
+    ImGui::TextDisabled(facts_->scene ? "the scene has no light" : "no scene is open");
     return;
   }
   if (std::exchange(lightsNew_, false)) {
@@ -134,7 +143,7 @@ void ViewerWindow::lightEditor(const LightFacts& light) {
   const auto found = lightEdits_.find(light.name);
   session::LightEdit edit = found == lightEdits_.end() ? session::LightEdit{} : found->second;
   const session::LightEdit& now = light.now;
-  bool changed = false;
+  bool placed = false;
   if (!beginRows("editor")) return;
   if (!directional) {
     nameCell("handles", "In the picture: drag an axis or a plane to move the light, a ring to turn it");
@@ -145,9 +154,9 @@ void ViewerWindow::lightEditor(const LightFacts& light) {
     glm::dvec3 position = edit.position.value_or(*now.position);
     const double least = -kMostInSetting, most = kMostInSetting;
     if (ImGui::DragScalarN("##position", ImGuiDataType_Double, &position.x, 3, 0.003f * radius, &least, &most,
-                           "%.3f", kClamped)) {
+                           lengthFormat(radius).c_str(), kClamped)) {
       edit.position = position;
-      changed = true;
+      placed = true;
     }
   }
   if (light.light.type != glsl::light_point) {
@@ -157,14 +166,16 @@ void ViewerWindow::lightEditor(const LightFacts& light) {
     glm::vec3 rotation = edit.rotation.value_or(*now.rotation);
     if (ImGui::DragFloat3("##rotation", &rotation.x, 0.5f, -360, 360, "%.1f", kClamped)) {
       edit.rotation = rotation;
-      changed = true;
+      placed = true;
     }
   }
-  if (now.size) changed |= lightSize(light, radius, edit);
-  if (now.colour) changed |= lightColour(light, edit);
+  const bool resized = now.size && lightSize(light, radius, edit);
+  const bool coloured = now.colour && lightColour(light, edit);
   endRows();
+  placed |= resized && isMesh(light);
+  const bool changed = placed || resized || coloured;
   // A light that was moved keeps both, so that the command places it the same whatever animations do.
-  if (changed && (edit.position || edit.rotation || (isMesh(light) && edit.size))) {
+  if (placed) {
     if (!directional && !edit.position) edit.position = now.position;
     if (light.light.type != glsl::light_point && !edit.rotation) edit.rotation = now.rotation;
   }

@@ -1,5 +1,6 @@
 // The dialog that walks through folders to a scene or an environment.
 #include <imgui.h>
+#include <imgui_stdlib.h>
 
 #include <algorithm>
 
@@ -17,7 +18,7 @@ constexpr const char* kTitle = "Open a scene or an environment";
 
 void ViewerWindow::browse(const fs::path& folder) {
   browsing_ = listFolder(folder);
-  setText(folderText_, browsing_->folder.string());
+  folderText_ = browsing_->folder.string();
 }
 
 /// Where the scene that is shown lies, unless it is one of limn's; the working folder otherwise.
@@ -59,8 +60,8 @@ void ViewerWindow::openDialog() {
           ImGuiWindowFlags_NoResize | ImGuiWindowFlags_NoMove | ImGuiWindowFlags_NoSavedSettings))
     return;
   ImGui::SetNextItemWidth(-1);
-  if (ImGui::InputText("##folder", folderText_, sizeof folderText_, ImGuiInputTextFlags_EnterReturnsTrue))
-    browse(folderText_);
+  if (ImGui::InputText("##folder", &folderText_, ImGuiInputTextFlags_EnterReturnsTrue))
+    browse(fs::path(folderText_));
   tip("Enter goes to the folder");
   ImGui::BeginChild("entries");
   browsedEntries();

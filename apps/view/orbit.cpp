@@ -46,6 +46,10 @@ void Orbit::fly(float rightwards, float up, float forward) {
   target_ += distance_ * (rightwards * right() + glm::vec3(0, up, 0) - forward * back());
 }
 
+void Orbit::recount(const glm::dvec3& from, const glm::dvec3& to) {
+  target_ = glm::vec3(glm::dvec3(target_) + (from - to));
+}
+
 void Orbit::look(float rightwards, float up) {
   const glm::vec3 from = eye();
   turn(rightwards, -up);

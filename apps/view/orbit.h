@@ -24,6 +24,10 @@ class Orbit {
   /// Turns the view around the camera instead of the point, radians.
   void look(float right, float up);
 
+  /// Counts the point from the origin `to` instead of `from`, both in the world of the file: eye and target
+  /// stay where they are in it.
+  void recount(const glm::dvec3& from, const glm::dvec3& to);
+
   glm::vec3 eye() const { return target_ + distance_ * back(); }
   glm::vec3 target() const { return target_; }
 

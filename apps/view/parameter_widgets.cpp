@@ -3,7 +3,7 @@
 #include <fmt/format.h>
 #include <imgui.h>
 
-#include <cmath>
+#include "apps/view/viewer_style.h"
 
 namespace limn::app {
 namespace {
@@ -13,9 +13,10 @@ std::string format(const char* number, const Parameter& p) {
   return *p.unit ? fmt::format("{} {}", number, p.unit) : number;
 }
 
-std::string rangeText(const Parameter& p) {
-  if (p.type == ParameterType::boolean || p.type == ParameterType::choice) return "";
-  return fmt::format("\n{:g} to {:g}{}{}", p.range.low, p.range.high, *p.unit ? " " : "", p.unit);
+/// What the parameter does, and within which range.
+std::string helpOf(const Parameter& p) {
+  if (p.type == ParameterType::boolean || p.type == ParameterType::choice) return p.doc;
+  return fmt::format("{}\n{:g} to {:g}{}{}", p.doc, p.range.low, p.range.high, *p.unit ? " " : "", p.unit);
 }
 
 /// ImGui's logarithmic sliders take 0 into a range by a dead zone of their own.
@@ -69,14 +70,14 @@ bool parameterWidgets(ParameterValues& values, const ParameterValues& defaults) 
     ImGui::TableNextColumn();
     ImGui::AlignTextToFramePadding();
     ImGui::TextUnformatted(p.name);
-    if (ImGui::IsItemHovered()) ImGui::SetTooltip("%s%s", p.doc, rangeText(p).c_str());
+    tip(helpOf(p));
     ImGui::TableNextColumn();
     std::string text = widget(p, values);
-    if (ImGui::IsItemHovered()) ImGui::SetTooltip("%s%s", p.doc, rangeText(p).c_str());
+    tip(helpOf(p));
     ImGui::TableNextColumn();
     if (now[i].second != standard[i].second) {
       if (ImGui::Button("x", {-1, 0})) text = standard[i].second;
-      if (ImGui::IsItemHovered()) ImGui::SetTooltip("back to %s", standard[i].second.c_str());
+      tip("back to " + standard[i].second);
     }
     if (!text.empty()) {
       values.set(p.name, text);

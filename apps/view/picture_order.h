@@ -54,6 +54,8 @@ struct OpenOrder {
   SceneQuestion scene;
   uint64_t file = 0;    ///< the same number: the same file again, with another floor or read once more
   bool needed = false;  ///< the program ends where it cannot be opened
+  /// The order of the same file that was not followed yet when this one was given, which starts from it.
+  std::optional<SceneQuestion> after = {};
 };
 
 /// Declares a picture that is to be written.
@@ -74,6 +76,7 @@ struct SceneFacts {
   std::vector<scene::CameraPose> cameras;  ///< at the time it was opened
   scene::CameraPose camera;                ///< that of the options
   bool environment = false;                ///< it has one: chosen, its own, or that of the default lights
+  bool ownEnvironment = false;  ///< that of its file, which lights may stand for as for a chosen one
   bool animated = false;
   double seconds = 0;  ///< of the animation; 0: endless
 };
@@ -128,6 +131,7 @@ struct PictureFacts {
   int compiled = 0, toCompile = 0;  ///< programs; 0, 0: none is being compiled
   std::string job;                  ///< what is going on besides the picture: "frame 3 of 60"; empty: nothing
   double jobFraction = 0;
+  bool saving = false;       ///< the job is a sequence that is being saved, which can be ended
   uint64_t opened = 0;       ///< open orders that have been followed, or have failed
   std::string message;       ///< the last result or problem
   bool problem = false;      ///< the message is one

@@ -39,10 +39,11 @@ bool changesMeshes(const session::View& view, const SceneQuestion& question) {
   return session::changeMeshes(view.pose, session::parseLightEdits(question.lightSettings));
 }
 
-std::shared_ptr<const SceneFacts> factsOf(const session::View& view, const OpenOrder& order) {
+std::shared_ptr<const SceneFacts> factsOf(const session::View& view, const SceneQuestion& question,
+                                          uint64_t file) {
   auto facts = std::make_shared<SceneFacts>();
-  facts->options = order.scene;
-  facts->file = order.file;
+  facts->options = question;
+  facts->file = file;
   facts->origin = view.scene.origin;
   facts->bounds = view.pose.bounds;
   facts->cameras = view.pose.cameras;
@@ -50,6 +51,7 @@ std::shared_ptr<const SceneFacts> factsOf(const session::View& view, const OpenO
   for (size_t i = 0; i < names.size(); ++i) facts->cameras[i].name = names[i];
   facts->camera = view.camera;
   facts->environment = static_cast<bool>(view.scene.environment);
+  facts->ownEnvironment = facts->environment && question.environment.empty() && !view.defaultLights;
   const auto& animations = view.scene.animations;
   const bool endless = !view.scene.dynamic.empty() || view.scene.medium.smoke;
   facts->animated = !animations.empty() || endless;
@@ -69,6 +71,7 @@ PictureStudio::PictureStudio(gpu::Device& device, std::filesystem::path shaders,
       reference_(std::move(cache), std::move(news)) {}
 
 void PictureStudio::publish() {
+  facts_.saving = saving();
   publish_(facts_);
   if (std::exchange(printed_, facts_.messages) == facts_.messages) return;
   sayInTerminal(facts_.message);
@@ -90,8 +93,22 @@ std::unique_ptr<ShownPicture> PictureStudio::makePicture(const session::View& vi
   return picture;
 }
 
+/// What the order changes of the one that it starts from, where that was refused, in the scene that is shown;
+/// else the order's scene.
+SceneQuestion PictureStudio::withoutRefused(const OpenOrder& order) const {
+  SceneQuestion wanted = order.scene;
+  if (!order.after || !refused_ || !sameFields(QuestionEffect::scene, *order.after, *refused_) ||
+      !facts_.scene || facts_.scene->file != order.file)
+    return wanted;
+  for (const QuestionField& field : questionFields())
+    if (field.effect == QuestionEffect::scene && printed(field, wanted) == printed(field, *order.after))
+      copyField(field, wanted, facts_.scene->options);
+  return wanted;
+}
+
 void PictureStudio::open(const OpenOrder& order) {
-  const SceneQuestion& wanted = order.scene;
+  const SceneQuestion wanted = withoutRefused(order);
+  const bool whole = wanted == order.scene;
   facts_.job = "opening " + std::filesystem::path(wanted.scene).filename().string();
   publish();
   facts_.job.clear();
@@ -107,13 +124,17 @@ void PictureStudio::open(const OpenOrder& order) {
     rendered_.reset();
     facts_.settled = false;
     wholeMs_ = 0;
-    facts_.scene = factsOf(*view_, order);
+    facts_.scene = factsOf(*view_, wanted, order.file);
     facts_.asked = wanted;
     facts_.camera = view_->camera;
-    say("opened " + wanted.scene);
+    describeLights();  // those of the scene before cannot be changed any more
+    facts_.shaderProblem.clear();
+    if (whole) say("opened " + wanted.scene);  // else the reason why something was left out stays
+    refused_ = whole ? std::nullopt : std::optional(order.scene);
   } catch (const std::exception& error) {
     if (order.needed) facts_.fatal = std::current_exception();
     say(error.what(), true);
+    refused_ = order.scene;
   }
   ++facts_.opened;
   publish();
@@ -222,9 +243,8 @@ PictureStudio::Outcome PictureStudio::render(const PictureOrder& order,
   return outcome;
 }
 
-void PictureStudio::describe(const PictureOrder& order) {
-  facts_.asked = order.scene;
-  facts_.camera = view_->camera;
+/// The lights as the view has them now.
+void PictureStudio::describeLights() {
   facts_.lights.resize(view_->pose.lights.size());
   const std::vector<std::string> names = session::findableNames(view_->pose.lightNames);
   for (size_t i = 0; i < facts_.lights.size(); ++i) {
@@ -234,6 +254,12 @@ void PictureStudio::describe(const PictureOrder& order) {
     light.editable = session::isEditable(view_->scene, view_->pose, static_cast<int>(i));
     light.now = session::describeLight(view_->scene, view_->pose, static_cast<int>(i));
   }
+}
+
+void PictureStudio::describe(const PictureOrder& order) {
+  facts_.asked = order.scene;
+  facts_.camera = view_->camera;
+  describeLights();
   if (!facts_.picture.problem.empty()) return;
   auto frame = std::make_shared<FrameFacts>();
   frame->passes = picture_->passes();
@@ -242,7 +268,7 @@ void PictureStudio::describe(const PictureOrder& order) {
   facts_.frame = std::move(frame);
 }
 
-/// Renders anew if the order, or how small the picture may be, has changed; true if so.
+/// Renders again if the order, or how small the picture may be, has changed; true if so.
 bool PictureStudio::follow(const PictureOrder& order, const std::function<bool()>& outdated) {
   int wanted = 1;
   if (order.moving)
@@ -271,6 +297,7 @@ bool PictureStudio::follow(const PictureOrder& order, const std::function<bool()
     wholeMs_ = std::max(wholeMs_, kSlower * milliseconds() * reduction_ * reduction_);
     return false;
   }
+  wantedTruth(order);  // the one before is not to stand beside this picture
   publish();
   return true;
 }

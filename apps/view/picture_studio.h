@@ -18,7 +18,8 @@ class PictureStudio {
   PictureStudio(gpu::Device& device, std::filesystem::path shaders, std::filesystem::path cache,
                 std::function<void(const PictureFacts&)> publish, std::function<void()> news);
 
-  /// Opens another scene. Where that fails the old one goes on; the program ends if the scene is needed.
+  /// Opens another scene. Where that fails the old one goes on; the program ends if the scene is needed. An
+  /// order that starts from one that failed is followed without what that one asked for.
   void open(const OpenOrder& order);
   /// Shows what is ordered, as far as it need not wait for anything. When `outdated` says that something else
   /// is wanted, a frame that has begun is abandoned between two of its passes. If every frame is outdated
@@ -38,16 +39,19 @@ class PictureStudio {
   void say(std::string message, bool problem = false);
   void publish();
   std::unique_ptr<ShownPicture> makePicture(const session::View& view);
+  SceneQuestion withoutRefused(const OpenOrder& order) const;
   void reloadShaders();
   void place(const PictureOrder& order);
   using Outcome = ShownPicture::Outcome;
   Outcome render(const PictureOrder& order, const std::function<bool()>& cancelled = {});
   Outcome renderShot(ShownPicture& picture, const render::Settings& settings, const PictureOrder& order,
                      const std::function<bool()>& cancelled, Shot& shot);
+  void describeLights();
   void describe(const PictureOrder& order);
   void inspect(const PictureOrder& order);
   bool inspectAtRest(const PictureOrder& order);
   bool follow(const PictureOrder& order, const std::function<bool()>& outdated);
+  std::string wantedTruth(const PictureOrder& order);
   bool followReference(const PictureOrder& order);
   bool noMetrics(const char* why);
   bool compare(const PictureOrder& order);
@@ -64,7 +68,8 @@ class PictureStudio {
   std::function<void(const PictureFacts&)> publish_;
   std::shared_ptr<session::View> view_;
   std::unique_ptr<ShownPicture> picture_, other_;
-  std::optional<SceneQuestion> placed_;  ///< whose lights the scene has
+  std::optional<SceneQuestion> refused_;  ///< the last order's scene, where it could not be opened as it is
+  std::optional<SceneQuestion> placed_;   ///< whose lights the scene has
   std::optional<PictureOrder> rendered_;
   int reduction_ = 1;      ///< of the last picture
   double wholeMs_ = 0;     ///< estimate for a frame that is not reduced

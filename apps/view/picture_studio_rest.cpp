@@ -44,17 +44,22 @@ std::pair<float, float> displayRange(const render::InspectedValues& values, int 
 
 }  // namespace
 
+/// What the reference is to be asked; "" where it is not shown. The truth of anything else is dropped.
+std::string PictureStudio::wantedTruth(const PictureOrder& order) {
+  std::string key = order.beside == Beside::reference ? truthKeyOf(order) : "";
+  if (key == truthKey_) return key;
+  truthKey_.clear();
+  reference_.cancel();
+  truth_.reset();
+  facts_.truth.reset();
+  facts_.difference.reset();
+  facts_.metrics.reset();
+  compared_ = false;
+  return key;
+}
+
 bool PictureStudio::followReference(const PictureOrder& order) {
-  const std::string key = order.beside == Beside::reference ? truthKeyOf(order) : "";
-  if (key != truthKey_) {
-    truthKey_.clear();
-    reference_.cancel();
-    truth_.reset();
-    facts_.truth.reset();
-    facts_.difference.reset();
-    facts_.metrics.reset();
-    compared_ = false;
-  }
+  const std::string key = wantedTruth(order);
   const bool wanted = !key.empty() && !order.moving && facts_.picture.problem.empty();
   if (wanted && truthKey_.empty() && !reference_.busy()) {
     truthKey_ = key;
@@ -89,7 +94,8 @@ bool PictureStudio::compare(const PictureOrder& order) {
   if (!facts_.picture.problem.empty() || !facts_.other.problem.empty())
     return noMetrics("there is no picture to compare");
   if (order.beside == Beside::reference && !truth_)
-    return noMetrics("the first picture of the truth is on its way");
+    return noMetrics(facts_.reference.problem.empty() ? "the first picture of the truth is on its way"
+                                                      : "there is no truth to compare with");
   if (compared_) return false;
   compared_ = true;
   try {
@@ -211,7 +217,8 @@ void PictureStudio::save(const SaveOrder& order) {
   }
 }
 
-/// Returns the picture at its whole size, as limn render makes it. It is not rendered anew where it is shown.
+/// Returns the picture at its whole size, as limn render makes it. It is not rendered again where it is
+/// shown.
 Image PictureStudio::renderWhole(const PictureOrder& order) {
   const bool shown = rendered_ && same(*rendered_, order) && facts_.picture.whole;
   if (!shown || !facts_.picture.problem.empty()) {
@@ -245,7 +252,7 @@ void PictureStudio::write(const SaveOrder& order, const std::filesystem::path& f
   sign(image, order.command);
   if (file.has_parent_path()) createFolder(file.parent_path());
   ToneMapping tone = picture.tone;
-  if (picture.automaticExposure) tone.exposureEv = sequenceEv_.value_or(automaticExposure(image));
+  if (picture.automaticExposure) tone.exposureEv = sequenceEv_ ? *sequenceEv_ : automaticExposure(image);
   if (sequence_) sequenceEv_ = tone.exposureEv;  // the first picture's is that of all
   writePicture(file, image, tone);
 }

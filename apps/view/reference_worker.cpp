@@ -88,7 +88,7 @@ int ReferenceWorker::resume(const std::stop_token& stop, const reference::Reques
 }
 
 void ReferenceWorker::work(const std::stop_token& stop, const Task& task) {
-  // Nothing but its scene is taken from the view, whose time and light are set anew meanwhile.
+  // Nothing but its scene is taken from the view, whose time and light are set meanwhile.
   reference::Request request{
       .scene = task.view->scene, .pose = task.pose, .camera = task.camera, .progress = {}, .checkpoint = {}};
   request.width = task.size.x;

@@ -1,6 +1,7 @@
 // What is written: pictures, sequences, suites, commands.
 #include <fmt/format.h>
 #include <imgui.h>
+#include <imgui_stdlib.h>
 
 #include "apps/view/viewer_style.h"
 #include "apps/view/viewer_window.h"
@@ -11,10 +12,11 @@ namespace limn::app {
 
 /// The picture, whole, together with the command that renders it.
 void ViewerWindow::save() {
-  if (area_.x < 1 || area_.y < 1) return;  // minimised: there is no picture
+  if (area_.x < 1 || area_.y < 1) return;  // there is no room for a picture
   SaveOrder wanted{
       .picture = order(), .file = saveText_, .command = renderCommand(state_, saveText_), .frames = {}};
   wanted.picture.moving = false;
+  wanted.picture.size = area_;  // also where the window is minimised and shows none
   thread_->save(std::move(wanted));
 }
 
@@ -29,6 +31,7 @@ void ViewerWindow::saveSequence() {
     if (!wanted.frames) throw Error("frames: a:b is wanted, the first and the last frame");
     wanted.command = sequenceCommand(state_, saveText_, *wanted.frames, wanted.fps);
     wanted.picture.moving = wanted.picture.timed = false;
+    wanted.picture.size = area_;
     wanted.picture.beside = Beside::nothing;
     wanted.picture.inspect.reset();
     playing_ = false;
@@ -58,11 +61,11 @@ void ViewerWindow::copyCommand() {
 void ViewerWindow::savePanel() {
   if (beginRows("save")) {
     nameCell("file", ".png as shown, or .exr linear");
-    ImGui::InputText("##save", saveText_, sizeof saveText_);
+    ImGui::InputText("##save", &saveText_);
     nameCell("frames", "First and last frame of a sequence, a:b, written as file.0000.png and so on");
     const float width = ImGui::GetContentRegionAvail().x;
     ImGui::SetNextItemWidth(0.45f * width);
-    ImGui::InputText("##frames", framesText_, sizeof framesText_);
+    ImGui::InputText("##frames", &framesText_);
     ImGui::SameLine();
     ImGui::SetNextItemWidth(-1);
     ImGui::DragFloat("##fps", &fps_, 0.1f, 0.1f, 1000, "%.4g per second", ImGuiSliderFlags_AlwaysClamp);
@@ -79,7 +82,7 @@ void ViewerWindow::savePanel() {
   ImGui::SameLine();
   if (ImGui::Button("Command")) copyCommand();
   tip("The command below goes to the clipboard (F7)");
-  if (!facts_->job.empty()) {
+  if (facts_->saving) {
     ImGui::ProgressBar(static_cast<float>(facts_->jobFraction), {-scaled(60), 0}, facts_->job.c_str());
     ImGui::SameLine();
     if (ImGui::Button("Stop")) thread_->cancelSaving();

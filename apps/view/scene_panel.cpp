@@ -1,6 +1,7 @@
 // Scene, camera, time and environment.
 #include <fmt/format.h>
 #include <imgui.h>
+#include <imgui_stdlib.h>
 
 #include <algorithm>
 
@@ -37,17 +38,22 @@ void ViewerWindow::cameraChooser() {
   if (!state_.scene.eye.empty()) title = "free";
   if (title.empty()) title = "frames the scene";
   if (!ImGui::BeginCombo("##camera", title.c_str())) return;
-  const auto choose = [&](const SceneQuestion& viewpoint, const scene::CameraPose& camera) {
+  const SceneFacts& shown = *facts_->scene;
+  const auto choose = [&](const SceneQuestion& viewpoint, const Orbit& orbit) {
     for (const char* key : {"camera", "eye", "target"})
       copyField(questionField(key), state_.scene, viewpoint);
-    orbit_ = Orbit(camera, facts_->scene->bounds);
+    orbit_ = orbit;
     moved();
   };
-  if (ImGui::Selectable("as opened")) choose(original_->options, original_->camera);
+  if (ImGui::Selectable("as opened")) {
+    Orbit orbit(original_->camera, original_->bounds);
+    orbit.recount(original_->origin, shown.origin);
+    choose(original_->options, orbit);
+  }
   for (const scene::CameraPose& camera : cameras) {
     SceneQuestion named;
     named.camera = camera.name;
-    if (ImGui::Selectable(camera.name.c_str())) choose(named, camera);
+    if (ImGui::Selectable(camera.name.c_str())) choose(named, Orbit(camera, shown.bounds));
   }
   ImGui::EndCombo();
 }
@@ -139,8 +145,7 @@ void ViewerWindow::scenePanel() {
            "A glTF file or one of limn's scenes by name; enter opens it, and so does a file dropped on "
            "the window. F4 reads it again");
   ImGui::SetNextItemWidth(-scaled(60));
-  if (ImGui::InputText("##file", sceneText_, sizeof sceneText_, ImGuiInputTextFlags_EnterReturnsTrue) &&
-      *sceneText_ != 0)
+  if (ImGui::InputText("##file", &sceneText_, ImGuiInputTextFlags_EnterReturnsTrue) && !sceneText_.empty())
     openFile(sceneText_);
   ImGui::SameLine();
   if (ImGui::Button("...", {scaled(28), 0})) browse();
@@ -171,7 +176,7 @@ void ViewerWindow::scenePanel() {
 
 /// How lights stand for the environment, if they do.
 void ViewerWindow::environmentLightRows(SceneQuestion& wanted) {
-  if (!wanted.environment.empty()) {
+  if (!wanted.environment.empty() || (facts_->scene && facts_->scene->ownEnvironment)) {
     nameCell("as lights",
              "Area lights at infinity stand for it, so that every technique shadows it: how much "
              "of a light's energy a row of texels must add for it to grow; smaller: fewer lights");
@@ -232,7 +237,8 @@ void ViewerWindow::environmentPanel() {
   environmentLightRows(wanted);
   endRows();
   if (wanted != before) {
-    if (wanted.environment.empty()) wanted.environmentLights = 0;
+    // The map is given up, and the scene may have none of its own.
+    if (wanted.environment.empty() && !before.environment.empty()) wanted.environmentLights = 0;
     open(wanted);
   }
 }

@@ -64,10 +64,6 @@ int letterOf(int key, int scancode) {
 
 }  // namespace
 
-void setText(TextField& target, const std::string& text) {
-  target[text.copy(target, sizeof target - 1)] = 0;
-}
-
 ViewerWindow::ViewerWindow(const ViewerOptions& options)
     : options_(options), registry_(TechniqueRegistry::defaultFolders(), warn) {
   state_.scene = options.scene;
@@ -94,10 +90,10 @@ ViewerWindow::ViewerWindow(const ViewerOptions& options)
   ownScenes_ = session::sceneNames();
   recentScenes_ = recentScenes();
   if (!state_.scene.scene.empty()) postOpening({.scene = state_.scene, .needed = true});
-  if (!options_.steps.empty()) chooseStep(0);
+  if (!options_.steps.empty()) state_.techniques = options_.steps.front().techniques.resolve(registry_);
   compareWith(besideNamed(options.compareWith));
-  setText(sceneText_, options.scene.scene);
-  setText(saveText_, options.save.string());
+  sceneText_ = options.scene.scene;
+  saveText_ = options.save.string();
   listen();
   ImGui_ImplGlfw_InitForOpenGL(context_->window(), true);
   ImGui_ImplOpenGL3_Init("#version 450 core");
@@ -130,21 +126,29 @@ void ViewerWindow::listen() {
   });
 }
 
-/// A scene, or an environment for the one that is shown.
+/// A scene, or an environment for the one that is shown. What the command line says of a scene is said of the
+/// first one.
 void ViewerWindow::openFile(const std::filesystem::path& file) {
-  SceneQuestion wanted;
   if (isEnvironment(file)) {
-    wanted = awaited();
+    SceneQuestion wanted = awaited();
     wanted.environment = file.string();
     open(wanted);
-  } else {
-    wanted.scene = file.string();
-    postOpening({.scene = carriedOver(state_.scene, wanted, false), .file = openings_ + 1});
+    return;
   }
+  SceneQuestion wanted = state_.scene.scene.empty() ? state_.scene : SceneQuestion();
+  wanted.scene = file.string();
+  postOpening({.scene = carriedOver(state_.scene, wanted, false), .file = openings_ + 1});
 }
 
 void ViewerWindow::open(const SceneQuestion& wanted) {
-  postOpening({.scene = wanted, .file = opening_ ? opening_->file : shownFile()});
+  if (wanted.scene.empty()) {  // before the first scene, which gets it
+    state_.scene = wanted;
+    if (!wanted.environment.empty()) say(wanted.environment + " lights the scene that is opened first");
+    return;
+  }
+  OpenOrder order{.scene = wanted, .file = opening_ ? opening_->file : shownFile()};
+  if (opening_) order.after = opening_->scene;
+  postOpening(std::move(order));
 }
 
 void ViewerWindow::postOpening(OpenOrder order) {
@@ -170,7 +174,7 @@ SceneQuestion ViewerWindow::awaited() const {
 
 /// What undo goes back from: the present choice with what is being opened of the same file.
 Edit ViewerWindow::present() const {
-  Edit edit{state_, orbit_, otherTechniques_};
+  Edit edit{state_, orbit_, otherTechniques_, step_};
   if (!opensAnotherFile()) edit.state.scene = awaited();
   return edit;
 }
@@ -186,21 +190,25 @@ void ViewerWindow::adopt(const SceneFacts& scene, const SceneFacts* before) {
   if (!scene.animated) state_.scene.time = 0;  // neither a key nor a slider would set it
   noteRecentScene(scene.options.scene);
   recentScenes_ = recentScenes();
+  if (!another) {  // whose file may lie elsewhere when it is read again
+    orbit_.recount(before->origin, scene.origin);
+    history_.recount(before->origin, scene.origin);
+  }
   if (sameViewpoint(state_.scene, scene.options)) orbit_ = Orbit(scene.camera, scene.bounds);
   lightEdits_ = session::parseLightEdits(state_.scene.lightSettings);
   chosenLight_ = scene::kNone;
   measured_.clear();
-  budgetOf_.clear();  // also where the same file is shown again: with another floor, or read anew
+  budgetOf_.clear();  // also where the same file is shown again: with another floor, or read again
   tuneProblem_.clear();
   lightsNew_ = true;
   drag_.reset();
-  setText(sceneText_, scene.options.scene);
+  sceneText_ = scene.options.scene;
   glfwSetWindowTitle(
       context_->window(),
       fmt::format("{} - {}", std::filesystem::path(scene.options.scene).filename().string(), options_.title)
           .c_str());
   moved();
-  if (another) history_.restart({state_, orbit_, otherTechniques_});
+  if (another) history_.restart({state_, orbit_, otherTechniques_, step_});
 }
 
 /// What undo or redo brings back; nothing where there is nothing more.
@@ -213,6 +221,7 @@ void ViewerWindow::restore(const Edit* edit) {
   copyFields(QuestionEffect::scene, state_.scene, shown);  // until it is open
   orbit_ = edit->orbit;
   otherTechniques_ = edit->others;
+  step_ = edit->step;
   lightEdits_ = session::parseLightEdits(state_.scene.lightSettings);
   drag_.reset();
   playing_ = false;
@@ -233,9 +242,13 @@ void ViewerWindow::takeFacts() {
   facts_ = std::move(newest);
   if (facts_->fatal) std::rethrow_exception(facts_->fatal);
   if (opening_ && facts_->opened == openings_) {
-    const bool failed =
-        !facts_->scene || !sameFields(QuestionEffect::scene, facts_->scene->options, opening_->scene);
-    if (failed) history_.forget(opening_->scene);
+    const auto isShown = [&](const SceneQuestion& question) {
+      return facts_->scene && sameFields(QuestionEffect::scene, facts_->scene->options, question);
+    };
+    if (!isShown(opening_->scene)) {
+      history_.forget(opening_->scene);
+      if (opening_->after && !isShown(*opening_->after)) history_.forget(*opening_->after);
+    }
     opening_.reset();
   }
   if (facts_->scene && facts_->scene != shown) adopt(*facts_->scene, shown.get());

@@ -9,6 +9,7 @@
 #include "apps/view/parameter_widgets.h"
 #include "apps/view/viewer_style.h"
 #include "apps/view/viewer_window.h"
+#include "core/base/error.h"
 #include "core/base/text.h"
 #include "core/image/metric_table.h"
 #include "core/question/term.h"
@@ -43,14 +44,14 @@ void helpPanel() {
                                      {"space", "play, pause"},
                                      {"F2", "the next technique of the same kind"},
                                      {"F3", "compare with nothing, the truth, others"},
-                                     {"F4", "open the scene anew"},
+                                     {"F4", "read the scene's file again"},
                                      {"ctrl O", "choose a file to open"},
                                      {"ctrl Z, ctrl shift Z", "undo, redo"},
                                      {"F5 F6 F7", "save picture, suite; copy command"},
                                      {"F8", "look at the frame's next texture"},
                                      {"F9", "difference instead of the right part"},
                                      {"F10", "save the sequence"},
-                                     {"escape", "close the inspector"},
+                                     {"escape", "close the inspector, dismiss a note"},
                                      {"page down, up", "next, previous step of the guide"},
                                      {"ctrl Q", "close"}};
   if (!ImGui::BeginTable("keys", 2)) return;
@@ -100,10 +101,15 @@ void ViewerWindow::panels() {
   ImGui::End();
 }
 
+/// Stays at the present step where the techniques of the other one are refused.
 void ViewerWindow::chooseStep(size_t step) {
-  step_ = step;
-  state_.techniques = options_.steps[step].techniques.resolve(registry_);
-  moved();
+  try {
+    state_.techniques = options_.steps[step].techniques.resolve(registry_);
+    step_ = step;
+    moved();
+  } catch (const Error& error) {
+    say(error.what(), true);
+  }
 }
 
 void ViewerWindow::guidePanel() {
@@ -168,6 +174,7 @@ void ViewerWindow::compareWith(Beside what) {
   if (what == Beside::techniques && otherTechniques_.empty()) {
     otherTechniques_ = state_.techniques;
     useNextTechnique(otherTechniques_, registry_);
+    history_.fillOthers(otherTechniques_);
   }
   moved();
 }

@@ -15,7 +15,7 @@
 namespace limn::app {
 namespace {
 
-constexpr float kSplitPixels = 6;  // of the line between two pictures
+constexpr float kSplitPixels = 6;  // of the line between two pictures, before scaled()
 
 /// The columns from `from` to `to` (parts of the width) of a picture that fills the area.
 void drawColumns(const gpu::Texture& texture, glm::vec2 corner, glm::vec2 size, float from, float to) {
@@ -125,7 +125,7 @@ void ViewerWindow::press(const KeyPress& pressed) {
   if (key == GLFW_KEY_F8) inspectNext();
   if (key == GLFW_KEY_F9) showDifference_ = !showDifference_;
   if (key == GLFW_KEY_F10) saveSequence();
-  if (key == GLFW_KEY_ESCAPE) {
+  if (key == GLFW_KEY_ESCAPE && !browsing_) {  // it closes the dialog alone
     inspection_.reset();
     message_.clear();
   }
@@ -133,10 +133,14 @@ void ViewerWindow::press(const KeyPress& pressed) {
   if (key == GLFW_KEY_PAGE_UP && step_ > 0) chooseStep(step_ - 1);
 }
 
-/// What is pressed before the first scene is there waits for it, unless it is typed into a text field.
+/// What is pressed while the first scene is being opened waits for it, unless it is typed into a text field.
 void ViewerWindow::handleKeys() {
   if (ImGui::GetIO().WantTextInput) pressed_.clear();
-  if (!facts_->scene) return;
+  if (!facts_->scene) {
+    if (std::ranges::find(pressed_, GLFW_KEY_ESCAPE, &KeyPress::key) != pressed_.end()) message_.clear();
+    if (!opening_) pressed_.clear();
+    return;
+  }
   for (const KeyPress& key : pressed_) press(key);
   pressed_.clear();
 }
@@ -250,7 +254,7 @@ bool ViewerWindow::dragSplit() {
   if (beside_ == Beside::nothing || area_.x < 1) return false;
   const ImGuiIO& io = ImGui::GetIO();
   const float x = corner_.x + split_ * static_cast<float>(area_.x);
-  const bool near = ImGui::IsItemHovered() && std::abs(io.MousePos.x - x) < kSplitPixels;
+  const bool near = ImGui::IsItemHovered() && std::abs(io.MousePos.x - x) < scaled(kSplitPixels);
   if (near || splitDragged_) ImGui::SetMouseCursor(ImGuiMouseCursor_ResizeEW);
   if (near && ImGui::IsMouseClicked(0)) splitDragged_ = true;
   if (!io.MouseDown[0]) splitDragged_ = false;

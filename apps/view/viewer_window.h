@@ -31,10 +31,6 @@ struct KeyPress {
   bool control = false, shift = false;
 };
 
-/// Holds the text of a text field.
-using TextField = char[1024];
-void setText(TextField& target, const std::string& text);
-
 class ViewerWindow {
  public:
   explicit ViewerWindow(const ViewerOptions& options);
@@ -167,6 +163,7 @@ class ViewerWindow {
   bool lightsNew_ = true;  ///< of a scene whose changed light, if there is one, is chosen at first
   GizmoMode gizmoMode_ = GizmoMode::move;
   std::optional<GizmoDrag> drag_;
+  bool markHeld_ = false;  ///< the mouse has been down since it chose a light by its mark
 
   float panelWidth_ = 0;  ///< pixels, as all that follows
   glm::vec2 corner_{0};   ///< of the picture's place in the window
@@ -188,9 +185,9 @@ class ViewerWindow {
       longestMs = std::max(longestMs, ms);
     }
   } frameTimes_;
-  TextField sceneText_ = "", saveText_ = "", framesText_ = "0:29", folderText_ = "";
+  std::string sceneText_, saveText_, framesText_ = "0:29", folderText_;  ///< of text fields
   float fps_ = 30;
-  TextField budgetText_ = "out/tune", tuneTechniques_ = "";
+  std::string budgetText_ = "out/tune", tuneTechniques_;
   std::vector<MeasuredQuestion> measured_;  ///< in that folder
   size_t measuredChosen_ = 0;
   float budgetMs_ = 16;

@@ -48,7 +48,10 @@ void add(LightEdit& edit, const std::string& setting, std::string_view property,
   if (property == "size") edit.size = numbers<2>(setting, value, 1);
   if (property == "colour") edit.colour = numbers<3>(setting, value, 1);
   if (property == "intensity") edit.intensity = numbers<1>(setting, value).x;
-  if (edit.size && !(edit.size->x > 0 && edit.size->y > 0)) refuse(setting, "sizes are above 0");
+  // Of smaller ones the area, by which intensities are divided, is 0 or makes light infinite.
+  constexpr float kLeastSize = 1e-9f;
+  if (edit.size && !(edit.size->x >= kLeastSize && edit.size->y >= kLeastSize))
+    refuse(setting, "sizes are above 0, at least 1e-9");
   if (edit.colour && glm::any(glm::lessThan(*edit.colour, glm::vec3(0))))
     refuse(setting, "colours are not negative");
   if (edit.intensity && *edit.intensity < 0) refuse(setting, "intensities are not negative");

@@ -14,7 +14,7 @@ constexpr Parameter kParameters[] = {
     real("moment_bias", 1e-6, {1e-7, 0.1}, "",
          "Share by which moments are pulled towards those of a well-spread distribution")
         .logScale(),
-    integer("cells", 3, {1, 8}, "cells", "Kernels are divided into so many parts along each axis").quality(),
+    integer("cells", 3, {1, 8}, "cells", "Parts into which kernels are divided along each axis").quality(),
     integer("search_rounds", 3, {0, 9}, "rounds",
             "How often the search kernel is narrowed to the nearest depth in it; 0: at the near plane, as "
             "published"),

@@ -162,6 +162,9 @@ TEST(Budget, SaysHowToMeasure) {
   EXPECT_EQ(tuneCommand(order),
             "limn tune balls --term direct --techniques pcss,vssm --metric flip --max-masked-share 0.02 "
             "--steps 0 --max-ms 2.5 --out out");
+  order.device = 1;
+  EXPECT_THAT(tuneCommand(order), testing::HasSubstr(" --device 1 "))
+      << "where the window's pictures are made";
   shown.term = "indirect";
   EXPECT_EQ(TuneOrder::questionOf(shown), shown);
 }

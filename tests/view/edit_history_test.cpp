@@ -36,6 +36,30 @@ TEST(EditHistory, WhatWasUndoneIsForgottenWithTheNextChange) {
   EXPECT_EQ(history.undo(), nullptr);
 }
 
+/// Of a scene that was read again from elsewhere: a drag after undo starts where the camera is.
+TEST(EditHistory, CountsItsOrbitsFromTheOriginThatIsShown) {
+  EditHistory history;
+  history.restart(withTime(0));
+  history.note(withTime(1));
+  const glm::vec3 eye = Orbit().eye();
+  history.recount({0, 0, 0}, {8, 0, -2});
+  EXPECT_EQ(history.undo()->orbit.eye(), eye + glm::vec3(-8, 0, 2));
+  EXPECT_EQ(history.redo()->orbit.eye(), eye + glm::vec3(-8, 0, 2));
+}
+
+/// Its title and sentence are those of the techniques that come back.
+TEST(EditHistory, KnowsTheStepOfTheGuide) {
+  EditHistory history;
+  history.restart(withTime(0));
+  Edit next = withTime(0);
+  next.step = 1;
+  history.note(next);
+  const Edit* before = history.undo();
+  ASSERT_NE(before, nullptr);
+  EXPECT_EQ(before->step, 0u);
+  EXPECT_EQ(history.redo()->step, 1u);
+}
+
 Edit withEnvironment(const char* environment, double time = 0) {
   Edit edit = withTime(time);
   edit.state.scene.environment = environment;

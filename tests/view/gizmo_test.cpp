@@ -27,6 +27,23 @@ TEST(Gizmo, PixelsAndDirectionsAreInverse) {
   EXPECT_FALSE(camera.pixel({6, 4, 10})) << "behind the camera";
 }
 
+/// On a monitor where text is twice as large, an arm is twice as long and as wide for the mouse.
+TEST(Gizmo, HandlesGrowWithTheText) {
+  const ScreenCamera usual = screen();
+  ScreenCamera large = usual;
+  large.handleScale = 2;
+  const glm::vec3 centre(0.2f, 0.1f, -0.3f);
+  const GizmoHandle arm{Kind::axis, 1};
+  const auto tip = [&](const ScreenCamera& camera) {
+    return *camera.pixel(outlineOf(camera, centre, arm)[1]);
+  };
+  const glm::vec2 start = *usual.pixel(centre);
+  EXPECT_NEAR(glm::distance(tip(large), start) / glm::distance(tip(usual), start), 2, 0.25) << "perspective";
+  const glm::vec2 beyond(0, -10);
+  EXPECT_FALSE(handleAt(usual, centre, GizmoMode::move, tip(usual) + beyond));
+  EXPECT_EQ(handleAt(large, centre, GizmoMode::move, tip(large) + beyond), arm);
+}
+
 /// A handle follows the mouse: held by its end and dragged to where the end would be, it takes the thing
 /// there.
 TEST(Gizmo, AxesAndPlanesFollowTheMouse) {

@@ -3,9 +3,13 @@
 
 #include <gtest/gtest.h>
 
+#include <chrono>
+#include <thread>
+
 #include "core/base/file.h"
 #include "tests/cli/process.h"
 #include "tests/support/gltf_builder.h"
+#include "tests/support/paths.h"
 
 namespace limn::app {
 namespace {
@@ -13,12 +17,12 @@ namespace {
 using test::GltfBuilder;
 
 /// A lamp of a mesh, seen from above.
-std::vector<std::byte> lamp() {
+std::vector<std::byte> lamp(const char* name = "lamp") {
   GltfBuilder b;
   const int material = b.append("materials", {{"emissiveFactor", {1, 1, 1}}, {"doubleSided", true}});
   const int corners = b.vec3({{0, 0, 0}, {0, 0, 1}, {1, 0, 1}, {1, 0, 0}});
   const int mesh = b.mesh({{"POSITION", corners}}, b.indices({0, 1, 2, 0, 2, 3}), material);
-  b.node({{"name", "lamp"}, {"mesh", mesh}});
+  b.node({{"name", name}, {"mesh", mesh}});
   return b.glb();
 }
 
@@ -48,6 +52,166 @@ TEST(PictureStudio, TheTruthGoesOnWhenLightsAreSetAgain) {
   order.tone.exposureEv = 1;
   studio.step(order, never);
   EXPECT_TRUE(facts.reference.running);
+}
+
+/// Not even for the frame of the window in which the reference has not been asked again.
+TEST(PictureStudio, TheTruthOfBeforeNeverStandsBesideANewPicture) {
+  const test::TemporaryFolder folder;
+  writeFile(folder / "lamp.glb", lamp());
+  const auto context = Context::create({});
+  gpu::Device device(*context);
+  PictureFacts facts;
+  std::shared_ptr<const Image8> before;
+  bool stale = false;
+  PictureStudio studio(
+      device, {}, {},
+      [&](const PictureFacts& newest) {
+        stale = stale || (before && newest.truth == before && newest.pictures > facts.pictures);
+        facts = newest;
+      },
+      [] {});
+  PictureOrder order;
+  order.scene.scene = (folder / "lamp.glb").string();
+  studio.open({.scene = order.scene});
+  ASSERT_TRUE(facts.scene) << facts.message;
+  order.of = facts.scene;
+  order.size = {16, 12};
+  order.beside = Beside::reference;
+  const auto step = [&] { studio.step(order, [] { return false; }); };
+  step();
+  for (int i = 0; i < 200 && !facts.truth; ++i) {
+    std::this_thread::sleep_for(std::chrono::milliseconds(50));
+    step();
+  }
+  before = facts.truth;
+  ASSERT_TRUE(before) << facts.reference.problem;
+  order.scene.eye = "0.4,3,0.7";
+  order.scene.target = "0.5,0,0.5";
+  step();
+  EXPECT_EQ(facts.picture.problem, "");
+  EXPECT_FALSE(stale);
+}
+
+/// From then on, not from its first picture on, whose shaders may take seconds: a light of the scene before
+/// that is changed meanwhile would be one that the scene does not have.
+TEST(PictureStudio, LightsAreThoseOfTheSceneThatWasOpened) {
+  const test::TemporaryFolder folder;
+  const auto context = Context::create({});
+  gpu::Device device(*context);
+  PictureFacts facts;
+  PictureStudio studio(
+      device, {}, {}, [&](const PictureFacts& newest) { facts = newest; }, [] {});
+  for (const char* name : {"lamp", "panel"}) {
+    SCOPED_TRACE(name);
+    PictureOrder order;
+    order.scene.scene = (folder / (std::string(name) + ".glb")).string();
+    writeFile(order.scene.scene, lamp(name));
+    studio.open({.scene = order.scene});
+    ASSERT_EQ(facts.lights.size(), 1u) << facts.message;
+    EXPECT_EQ(facts.lights[0].name, name);
+    EXPECT_TRUE(facts.lights[0].editable);
+    order.of = facts.scene;
+    order.size = {16, 12};
+    studio.step(order, [] { return false; });
+    EXPECT_EQ(facts.picture.problem, "");
+  }
+}
+
+/// What was wrong with a shader is said no longer when another scene is opened, whose programs are new.
+TEST(PictureStudio, ProblemsOfShadersEndWithTheScene) {
+  const test::TemporaryFolder folder;
+  writeFile(folder / "lamp.glb", lamp());
+  const std::filesystem::path inside = "glsl/deferred/tone_map.comp.glsl";
+  std::filesystem::create_directories((folder.path() / inside).parent_path());
+  const std::string good = readTextFile(std::filesystem::path(test::kSourceDir) / inside);
+  writeTextFile(folder.path() / inside, good);
+  const auto context = Context::create({});
+  gpu::Device device(*context);
+  PictureFacts facts;
+  PictureStudio studio(
+      device, folder.path(), {}, [&](const PictureFacts& newest) { facts = newest; }, [] {});
+  PictureOrder order;
+  order.scene.scene = (folder / "lamp.glb").string();
+  order.size = {16, 12};
+  const auto step = [&] { studio.step(order, [] { return false; }); };
+  const auto open = [&] {
+    studio.open({.scene = order.scene});
+    order.of = facts.scene;
+    step();
+  };
+  open();
+  EXPECT_EQ(facts.picture.problem, "");
+  writeTextFile(folder.path() / inside, good + "not a shader");
+  for (int i = 0; i < 200 && facts.shaderProblem.empty(); ++i) {
+    std::this_thread::sleep_for(std::chrono::milliseconds(50));
+    step();
+  }
+  ASSERT_NE(facts.shaderProblem, "");
+  writeTextFile(folder.path() / inside, good);
+  open();
+  EXPECT_EQ(facts.shaderProblem, "");
+  EXPECT_EQ(facts.picture.problem, "");
+}
+
+/// What was asked for while an environment that cannot be read was still being opened.
+TEST(PictureStudio, ARefusedOrderTakesNothingElseWithIt) {
+  const test::TemporaryFolder folder;
+  writeFile(folder / "lamp.glb", lamp());
+  const auto context = Context::create({});
+  gpu::Device device(*context);
+  PictureFacts facts;
+  PictureStudio studio(
+      device, {}, {}, [&](const PictureFacts& newest) { facts = newest; }, [] {});
+  SceneQuestion scene;
+  scene.scene = (folder / "lamp.glb").string();
+  studio.open({.scene = scene, .file = 1});
+  ASSERT_TRUE(facts.scene) << facts.message;
+  SceneQuestion lit = scene;
+  lit.environment = (folder / "missing.hdr").string();
+  studio.open({.scene = lit, .file = 1});
+  EXPECT_TRUE(facts.problem);
+  SceneQuestion floored = lit;
+  floored.floor = "on";
+  studio.open({.scene = floored, .file = 1, .after = lit});
+  EXPECT_EQ(facts.scene->options.floor, "on");
+  EXPECT_EQ(facts.scene->options.environment, "");
+  EXPECT_TRUE(facts.problem) << "why there is no environment is still said";
+  EXPECT_EQ(facts.opened, 3u);
+  SceneQuestion scattering = floored;  // which starts from what was asked, not from what was opened
+  scattering.sigmaS = "0.1";
+  studio.open({.scene = scattering, .file = 1, .after = floored});
+  EXPECT_EQ(facts.scene->options.floor, "on");
+  EXPECT_EQ(facts.scene->options.sigmaS, "0.1");
+  studio.open({.scene = floored, .file = 1});
+  EXPECT_EQ(facts.scene->options.sigmaS, "0.1") << "nothing is left of an order that starts from no other";
+}
+
+/// What can be ended is a sequence that is being saved, not a scene that is being opened.
+TEST(PictureStudio, SaysWhatCanBeEnded) {
+  const test::TemporaryFolder folder;
+  writeFile(folder / "lamp.glb", lamp());
+  const auto context = Context::create({});
+  gpu::Device device(*context);
+  PictureFacts facts;
+  std::vector<std::string> endable, jobs;
+  PictureStudio studio(
+      device, {}, {},
+      [&](const PictureFacts& newest) {
+        facts = newest;
+        if (!facts.job.empty()) (facts.saving ? endable : jobs).push_back(facts.job);
+      },
+      [] {});
+  PictureOrder order;
+  order.scene.scene = (folder / "lamp.glb").string();
+  studio.open({.scene = order.scene});
+  order.of = facts.scene;
+  order.size = {16, 12};
+  studio.save({.picture = order, .file = folder / "a.png", .command = {}, .frames = FrameRange{0, 1}});
+  while (studio.saving()) studio.saveNext();
+  EXPECT_EQ(jobs, std::vector<std::string>{"opening lamp.glb"});
+  EXPECT_EQ(endable, std::vector<std::string>{"frame 1 of 2"});
+  EXPECT_FALSE(facts.saving);
+  EXPECT_FALSE(facts.problem) << facts.message;
 }
 
 }  // namespace

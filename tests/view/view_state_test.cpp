@@ -231,6 +231,25 @@ TEST(Orbit, NeverTurnsOver) {
   EXPECT_GT(glm::distance(orbit.eye(), orbit.target()), 0);
 }
 
+/// A file that is read again may lie elsewhere: the next drag goes on from where the camera is.
+TEST(Orbit, StaysInTheWorldWhenTheOriginMoves) {
+  const glm::dvec3 from(1e6, 0, -2e6), to(1e6 + 512, 64, -2e6);
+  Orbit orbit(scene::lookAt({1, 2, 4}, glm::vec3(0), 0.8f), {glm::vec3(-1), glm::vec3(1)});
+  SceneQuestion before, after;
+  setCamera(before, orbit, from);
+  orbit.recount(from, to);
+  setCamera(after, orbit, to);
+  const auto place = [](const std::string& text) {
+    glm::dvec3 at(0);
+    std::istringstream words(text);
+    char comma = 0;
+    words >> at.x >> comma >> at.y >> comma >> at.z;
+    return at;
+  };
+  EXPECT_LT(glm::distance(place(after.eye), place(before.eye)), 1e-4);
+  EXPECT_LT(glm::distance(place(after.target), place(before.target)), 1e-4);
+}
+
 TEST(Orbit, LookingAroundStaysInPlace) {
   Orbit orbit(scene::lookAt({1, 2, 4}, glm::vec3(0), 0.8f), {glm::vec3(-1), glm::vec3(1)});
   const glm::vec3 eye = orbit.eye();

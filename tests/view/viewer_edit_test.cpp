@@ -13,6 +13,8 @@
 namespace limn::test {
 namespace {
 
+using json = nlohmann::json;
+
 class ViewerEditTest : public ViewerWindowTest {
  protected:
   /// Types a number into the slider at that place, which is a text field after ctrl and a click. No key is
@@ -23,10 +25,10 @@ class ViewerEditTest : public ViewerWindowTest {
            "xdotool type -- " +
            number + "; sleep 1; xdotool key Return; sleep 1; frames 2\n";
   }
-  /// The number that follows an option of a command.
-  static double numberAfter(const std::string& option, const std::string& command) {
-    const size_t at = command.find(option + " ");
-    return at == std::string::npos ? NAN : std::strtod(command.c_str() + at + option.size() + 1, nullptr);
+  /// The number that follows this text in a command.
+  static double numberAfter(const std::string& text, const std::string& command) {
+    const size_t at = command.find(text);
+    return at == std::string::npos ? NAN : std::strtod(command.c_str() + at + text.size(), nullptr);
   }
   /// Red, green and blue of the panels left of the picture in window.png.
   std::vector<float> panels() const {
@@ -61,7 +63,6 @@ TEST_F(ViewerEditTest, CamerasThatMoveAreTakenFromWhereTheyAre) {
   scene.append("cameras", {{"type", "perspective"}, {"perspective", {{"yfov", 0.8}, {"znear", 0.01}}}});
   const int camera = scene.node({{"name", "rail"}, {"camera", 0}});
   const int times = scene.floats({0, 60}), places = scene.vec3({{0, 0.3f, 3}, {60, 0.3f, 3}});
-  using json = nlohmann::json;
   scene.append("animations",
                {{"samplers", json::array({{{"input", times}, {"output", places}}})},
                 {"channels",
@@ -73,9 +74,9 @@ TEST_F(ViewerEditTest, CamerasThatMoveAreTakenFromWhereTheyAre) {
            "save paused.exr; point 470 100; xdotool mousedown 1; frames 2; point 471 100\n"
            "xdotool mouseup 1; frames 2; save dragged.exr");
   ASSERT_EQ(outcome.status, 0) << outcome.err;
-  const double metres = numberAfter("--time", command("paused.exr"));  // one in each second
+  const double metres = numberAfter("--time ", command("paused.exr"));  // one in each second
   EXPECT_GT(metres, 1);
-  EXPECT_NEAR(numberAfter("--eye", command("dragged.exr")), metres, 0.1);
+  EXPECT_NEAR(numberAfter("--eye ", command("dragged.exr")), metres, 0.1);
 }
 
 /// What is typed may lie beyond a slider's ends, but not beyond what the command accepts.
@@ -125,6 +126,84 @@ TEST_F(ViewerEditTest, HandlesThatAreNotMovedChangeNothing) {
   EXPECT_THAT(command("last.exr"), testing::Not(testing::HasSubstr("--set-light")));
   EXPECT_NE(panelsAfter(down + "point " + place(end, 20) + "\n" + up), untouched);
   EXPECT_THAT(command("last.exr"), testing::HasSubstr("--set-light"));
+}
+
+/// A light is chosen by its mark although the hand shakes: the camera stays where it is.
+TEST_F(ViewerEditTest, MarksAreNotWhereTheSceneIsTurned) {
+  SceneQuestion question;
+  question.scene = "cornell_box";
+  question.width = 300;
+  question.height = 400;
+  const session::View opened = session::open(question);
+  const app::ScreenCamera screen{opened.camera, {400, 0}, {300, 400}};
+  const glm::vec2 mark = screen.pixel(opened.pose.lights.at(0).position).value();
+  const auto point = [&](int right) {
+    return fmt::format("point {} {}", std::lround(mark.x) + right, std::lround(mark.y));
+  };
+  const Outcome outcome =
+      view("cornell_box --technique hard_shadow_map --size 300x400 --open lights --save a.exr",
+           "save first.exr; " + point(0) + "; xdotool mousedown 1; frames 2; " + point(3) +
+               "; xdotool mouseup 1; frames 2; save last.exr");
+  ASSERT_EQ(outcome.status, 0) << outcome.err;
+  EXPECT_EQ(command("last.exr"), command("first.exr"));
+}
+
+/// A light whose rotation alone was set goes on with its animation when it becomes brighter.
+TEST_F(ViewerEditTest, BrighterLightsStillFollowTheirAnimation) {
+  GltfBuilder scene;
+  scene.triangle();
+  const int lamp = scene.light({{"type", "spot"}, {"intensity", 5}, {"spot", json::object()}},
+                               {{"name", "lamp"}, {"translation", {0.3, 0.3, 2}}});
+  const int times = scene.floats({0, 60}), places = scene.vec3({{0, 0.3f, 3}, {60, 0.3f, 3}});
+  scene.append(
+      "animations",
+      {{"samplers", json::array({{{"input", times}, {"output", places}}})},
+       {"channels", json::array({{{"sampler", 0}, {"target", {{"node", lamp}, {"path", "translation"}}}}})}});
+  writeFile(folder_ / "rail.glb", scene.glb());
+  const Outcome outcome = view(
+      "rail.glb --technique hard_shadow_map --set-light lamp.rotation=10,0,0 --size 160x500 --open lights "
+      "--save a.exr",
+      "save first.exr\n" + type("270 294", "7") + "save brighter.exr");
+  ASSERT_EQ(outcome.status, 0) << outcome.err;
+  EXPECT_THAT(command("brighter.exr"), testing::AllOf(testing::HasSubstr("lamp.rotation=10,0,0"),
+                                                      testing::HasSubstr("lamp.intensity=7"),
+                                                      testing::Not(testing::HasSubstr("lamp.position"))));
+}
+
+/// Numbers that are dragged have the digits of a scene of a centimetre.
+TEST_F(ViewerEditTest, LightsOfSmallScenesMoveByLessThanAMillimetre) {
+  GltfBuilder scene;
+  const int corners = scene.vec3({{0, 0, 0}, {0.01f, 0, 0}, {0, 0.01f, 0}});
+  scene.meshNode(scene.mesh({{"POSITION", corners}}));
+  scene.light({{"type", "point"}, {"intensity", 1e-3}},
+              {{"name", "lamp"}, {"translation", {0.003, 0.003, 0.02}}});
+  writeFile(folder_ / "small.glb", scene.glb());
+  const Outcome outcome = view(
+      "small.glb --technique hard_shadow_map --set-light lamp.intensity=2e-3 --size 160x500 --open lights "
+      "--save a.exr",
+      "save first.exr; point 150 202; xdotool mousedown 1; frames 2; point 160 202; xdotool mouseup 1\n"
+      "frames 2; save moved.exr");
+  ASSERT_EQ(outcome.status, 0) << outcome.err;
+  const double metres = numberAfter("lamp.position=", command("moved.exr"));
+  EXPECT_GT(metres, 0.003);
+  EXPECT_LT(metres, 0.004);
+}
+
+/// How lights that stand for the scene's own environment are combined leaves them what they are.
+TEST_F(ViewerEditTest, LightsOfAScenesOwnEnvironmentStay) {
+  std::filesystem::copy_file(std::string(kBinaryDir) + "/assets/environments/sky.exr", folder_ / "sky.exr");
+  GltfBuilder scene;
+  const int node = scene.triangle();
+  scene.append("scenes", {{"nodes", json::array({node})}, {"extras", {{"limn_environment", "sky.exr"}}}});
+  writeFile(folder_ / "own.glb", scene.glb());
+  const Outcome outcome = view(
+      "own.glb --technique hard_shadow_map --environment-lights 0.05 --size 160x312 --open environment "
+      "--save "
+      "a.exr",
+      "save first.exr; click 250 208; click 250 250; hear opened 2; save last.exr");
+  ASSERT_EQ(outcome.status, 0) << outcome.err;
+  EXPECT_THAT(command("last.exr"), testing::AllOf(testing::HasSubstr("--environment-lights 0.05"),
+                                                  testing::HasSubstr("--environment-combine ratio")));
 }
 
 /// An environment that can no longer be read is passed over.

@@ -100,13 +100,14 @@ TEST_F(ViewerInputTest, ChoosesEnvironments) {
 }
 
 /// Without a scene the window says how to open one; one of limn's is chosen from its list, of two columns
-/// here, and stands in the title then. Keys that were typed into a field before, here F2, do nothing.
+/// here, and stands in the title then. Keys that were pressed before, here F2, do nothing, be it in a field.
 TEST_F(ViewerInputTest, StartsWithoutAScene) {
   const std::vector<std::string> names = session::sceneNames();
   const auto entry = std::ranges::find(names, "cornell_box") - names.begin();
   const std::string place = fmt::format("{} {}", 440 + 276 * (entry % 2), 94 + 17 * (entry / 2));
   const Outcome outcome = view("--size 600x420 --technique hard_shadow_map --save a.exr",
-                               "sleep 1; xdotool mousemove 200 44; sleep 1; xdotool click 1; sleep 1\n"
+                               "sleep 1; xdotool key F2; sleep 1\n"
+                               "xdotool mousemove 200 44; sleep 1; xdotool click 1; sleep 1\n"
                                "xdotool key F2 Escape; sleep 1; xdotool mousemove " +
                                    place +
                                    "; sleep 1; xdotool click 1; hear opened 1\n"
@@ -118,6 +119,25 @@ TEST_F(ViewerInputTest, StartsWithoutAScene) {
               testing::HasSubstr("limn render cornell_box --technique hard_shadow_map "));
   EXPECT_EQ(picture("first.exr").width(), 600);
   EXPECT_EQ(picture("first.exr").height(), 420);
+}
+
+/// What the command line says of the scene, and an environment that comes first, wait for one.
+TEST_F(ViewerInputTest, TheFirstSceneIsSeenAndLitAsWasSaid) {
+  const std::string assets = std::string(kBinaryDir) + "/assets/";
+  std::filesystem::copy_file(assets + "environments/sky.exr", folder_ / "sky.exr");
+  const Outcome outcome = view("--size 160x212 --technique hard_shadow_map --floor on --fov 30 --save a.exr",
+                               "sleep 1; drop sky.exr; sleep 1; drop " + assets +
+                                   "gem/gem.glb; hear opened 1; save first.exr\n"
+                                   "drop " +
+                                   assets + "teapot/teapot.glb; hear opened 2; save second.exr");
+  ASSERT_EQ(outcome.status, 0) << outcome.err;
+  EXPECT_EQ(outcome.err, "");
+  EXPECT_THAT(command("first.exr"),
+              testing::AllOf(testing::HasSubstr("gem.glb"), testing::HasSubstr("--fov 30"),
+                             testing::HasSubstr("--floor on"), testing::HasSubstr("sky.exr")));
+  EXPECT_THAT(command("second.exr"),
+              testing::AllOf(testing::HasSubstr("teapot.glb"), testing::Not(testing::HasSubstr("--fov")),
+                             testing::Not(testing::HasSubstr("--floor"))));
 }
 
 /// Through a folder to a scene, and back; Escape closes the dialog.
@@ -140,6 +160,36 @@ TEST_F(ViewerInputTest, WalksThroughFoldersToAFile) {
   EXPECT_THAT(command("gem.exr"), testing::HasSubstr("models/gem.glb"));
   EXPECT_THAT(command("lit.exr"), testing::HasSubstr("models/sky.exr"));
   EXPECT_EQ(colours(picture("closed.exr")), colours(picture("lit.exr")));
+}
+
+/// A text field holds whatever a path may hold.
+TEST_F(ViewerInputTest, LongPathsStayWhole) {
+  std::string path;
+  for (int i = 0; i < 6; ++i) path += std::string(200, 'd') + "/";
+  path += "a.exr";
+  const Outcome outcome = view("cornell_box --technique hard_shadow_map --size 160x132 --save " + path,
+                               "xdotool key F5; await " + path);
+  EXPECT_EQ(outcome.status, 0) << outcome.err;
+  EXPECT_EQ(outcome.err, "");
+  EXPECT_TRUE(std::filesystem::exists(folder_ / path));
+}
+
+/// The dialog takes Escape for itself: the inspector below it stays.
+TEST_F(ViewerInputTest, EscapeInTheDialogLeavesTheInspector) {
+  const auto shown = [&](const std::string& script) {
+    const Outcome outcome = view(
+        "cornell_box --technique hard_shadow_map --size 400x300 --save a.exr --screenshot window.png",
+        "save first.exr; point 500 250; xdotool key F8; frames 2; sleep 1\n" + script + "frames 2; sleep 1");
+    EXPECT_EQ(outcome.status, 0) << outcome.err;
+    // Where the inspector lies, without messages and times.
+    const Image window = picture("window.png").select({"R", "G", "B"});
+    std::vector<float> pixels;
+    for (int y = 60; y < 150; ++y)
+      for (int x = 420; x < 780; ++x) pixels.push_back(window.at(x, y, 1));
+    return pixels;
+  };
+  const std::vector<float> without = shown("xdotool key Escape; frames 2\n");
+  EXPECT_NE(shown("xdotool key ctrl+o; frames 2; xdotool key Escape; frames 2\n"), without);
 }
 
 TEST_F(ViewerInputTest, WithoutADisplayAdvisesWhatWorks) {
@@ -219,6 +269,18 @@ TEST_F(ViewerInputTest, UndoesAndRedoes) {
   EXPECT_EQ(command("back.exr"), command("turned.exr"));
   EXPECT_EQ(colours(picture("twice.exr")), colours(picture("first.exr")));
   EXPECT_EQ(colours(picture("again.exr")), colours(picture("turned.exr")));
+}
+
+/// Techniques to compare with that come by themselves are not what undo takes back.
+TEST_F(ViewerInputTest, UndoGoesBeyondTheBeginningOfAComparison) {
+  const Outcome outcome = view("cornell_box --technique pcss --size 160x132 --save a.exr",
+                               "save first.exr; xdotool key F2; save other.exr; sleep .5\n"
+                               "xdotool key F3; frames 2; xdotool key F3; frames 2; sleep 1\n"
+                               "xdotool key ctrl+z; save back.exr");
+  ASSERT_EQ(outcome.status, 0) << outcome.err;
+  EXPECT_EQ(outcome.err, "");
+  EXPECT_NE(command("other.exr"), command("first.exr"));
+  EXPECT_EQ(command("back.exr"), command("first.exr"));
 }
 
 /// Every slider of a technique goes from one end of its range to the other, and each x brings a default back.

@@ -245,6 +245,7 @@ TEST(LightEdits, RefusalsSayWhatIsAccepted) {
   EXPECT_THAT(refusal({"left.position=1,2"}), HasSubstr("3 numbers"));
   EXPECT_THAT(refusal({"left.position=1,2,x"}), HasSubstr("a number is wrong"));
   EXPECT_THAT(refusal({"left.size=0"}), HasSubstr("above 0"));
+  EXPECT_THAT(refusal({"left.size=1,1e-25"}), HasSubstr("at least 1e-9"));
   EXPECT_THAT(refusal({"left.intensity=-1"}), HasSubstr("not negative"));
   EXPECT_THAT(refusal({"middle.intensity=1"}), HasSubstr("left"));
 }
