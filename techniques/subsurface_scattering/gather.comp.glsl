@@ -1,10 +1,10 @@
 // The mean over the profile of the light that enters around a pixel: points drawn around it in the plane that touches the
 // surface stand for the places that rays through them see. The pixels of a work group have the same place, its z, in a pattern
-// of block x block, for which they draw every block^2-th point of their body's sequence. Where light gets less far than
-// least_patterned_reach, all draw the points of the first place. A dispatch answers for all bodies with the program's TEXTURED.
+// of block x block, for which they draw every block^2-th point of their body's sequence. Where light gets less far, the pattern is
+// smaller, and takes fewer of these sets (pattern_weights.glsl). A dispatch answers for all bodies with the program's TEXTURED.
 //
 // What it stores still lacks a factor that varies with the pixel's own colour (exit.comp.glsl): without textures C, with them
-// its root. In alpha it says how much of the pattern is averaged (pattern_weights.glsl).
+// its root. In alpha it says over how much is averaged (pattern_weights.glsl).
 //
 // SAMPLES: points of each pixel. DISC_POINTS: how many of them, the last ones, are drawn from the disc. NORMALISE:
 // entry_normalise_*. PLANES 2: half of the points lie in the plane that faces the camera. ROOT 1: at a border of two colours the
@@ -129,7 +129,8 @@ void main() {
   float depth = 1.0 / dot(own_plane, pixel_ray(pixel));
   vec3 reach = diffusion_reach(body.extinction, absorption, walk_reflectance(boundary));  // units
   vec3 pixels = reach * pixels_of_unit(body, depth);
-  uint sub_buffer = max(pixels.x, max(pixels.y, pixels.z)) < least_patterned_reach ? 0u : uint(z);
+  int side = pattern_side(pixels, block);
+  uint sub_buffer = uint(pattern_set(pixel, side, block));
   bool asked = own.w != no_instance && body_index != no_body && (body.textured != 0u) == (TEXTURED != 0);
   if (asked) {
     Colours colours = matter_colours(body.extinction, absorption, boundary);
@@ -234,6 +235,6 @@ void main() {
 #endif
     mean += hidden;
 #endif
-    imageStore(gathered, pixel, vec4(mean, pattern_spread_pack(pattern_spread(pixels, block))));
+    imageStore(gathered, pixel, vec4(mean, pattern_pack(side, pattern_shares(pixels))));
   }
 }

@@ -7,8 +7,7 @@
 #include "techniques/subsurface_scattering/pattern_weights.glsl"
 
 uniform usampler2D planes;
-uniform sampler2D gathered;  // light, and in alpha how much is averaged
-uniform int block;           // pixels
+uniform sampler2D gathered;  // light, and in alpha pattern_pack()
 
 const float least_cosine = 0.8;  // of two normals
 const float most_slope = 0.6;    // of the way from one to the other against the plane
@@ -38,28 +37,28 @@ bool counts(Centre c, ivec2 pixel) {
 // The light of a pixel whose texel of `planes` is `own`, with what it holds in alpha.
 vec4 pattern_mean(ivec2 pixel, uvec4 own, ivec2 axis) {
   vec4 gathered_here = texelFetch(gathered, pixel, 0);
-  vec3 spread = pattern_spread_unpack(gathered_here.a);
-  int reach = pattern_reach(spread, block);
-  if (reach == 0) return gathered_here;
+  int side = pattern_packed_side(gathered_here.a);
+  if (side < 2) return gathered_here;
   Centre centre;
   centre.instance = own.w;
   centre.plane = uintBitsToFloat(own.xyz);
   centre.place = pixel_ray(pixel) / dot(centre.plane, pixel_ray(pixel));
   centre.squared = dot(centre.plane, centre.plane);
-  vec3 weights = pattern_weights(spread, block, 0);
+  float weights = pattern_weight(side, 0);
   vec3 sum = weights * gathered_here.rgb;
-  for (int t = 1; t <= reach; ++t) {
+  for (int t = 1; t <= side / 2; ++t) {
     bool after = counts(centre, pixel + t * axis);
     bool before = counts(centre, pixel - t * axis);
     if (!after && !before) continue;
-    vec3 weight = pattern_weights(spread, block, t);
+    float weight = pattern_weight(side, t);
     vec3 pair = vec3(0.0);
     if (after) pair += texelFetch(gathered, pixel + t * axis, 0).rgb;
     if (before) pair += texelFetch(gathered, pixel - t * axis, 0).rgb;
     sum += weight * (after && before ? pair : 2.0 * pair);
     weights += 2.0 * weight;
   }
-  return vec4(sum / weights, gathered_here.a);
+  vec3 mean = mix(gathered_here.rgb, sum / weights, pattern_packed_shares(gathered_here.a));
+  return vec4(mean, gathered_here.a);
 }
 
 #endif  // PATTERN_MEAN_GLSL

@@ -1,5 +1,5 @@
-// How much light is averaged over the pattern of interleaved pixels that draw different points, for each channel by how far its
-// light gets: a mean blurs, and what blurs red light little would take most of blue away.
+// The pattern of interleaved pixels that draw different points, and the mean over it. Its size follows how far light gets, since a
+// mean blurs; in it each place of the pattern counts once, so that none of the pattern is left to be seen.
 #ifndef PATTERN_WEIGHTS_GLSL
 #define PATTERN_WEIGHTS_GLSL
 #include "glsl/numeric/language.glsl"
@@ -9,42 +9,37 @@ LIMN_BEGIN
 // pattern of points would take away more than it is worth, and without it the pattern shows.
 LIMN_CONST float least_patterned_reach = 0.8f;
 
-// Light that gets twice as far as least_patterned_reach counts pixels side by side in full, and light that gets from 0.75 to 1.5
-// times as far as the pattern is wide counts more and more of the pattern.
-LIMN_CONST float pattern_widths = 0.75f;
-
-// From 0, nothing is averaged, over 1, a mean of 1/4, 1/2 and 1/4 along rows and columns, to 2, a mean over the whole pattern of
-// block x block pixels. `reach`: of each channel, pixels; 0 for all where the farthest is below least_patterned_reach.
-LIMN_FN vec3 pattern_spread(vec3 reach, int block) {
-  if (max(reach.x, max(reach.y, reach.z)) < least_patterned_reach) return vec3(0.0f);
-  vec3 pairs = clamp(reach / least_patterned_reach - 1.0f, vec3(0.0f), vec3(1.0f));
-  float width = pattern_widths * float(block);
-  vec3 all = block > 2 ? clamp(reach / width - 1.0f, vec3(0.0f), vec3(1.0f)) : vec3(0.0f);
-  return pairs + all;
+// Pixels along a side of the pattern: all of `block` where light gets as far as that, and 2 where it gets less far. `reach`: of each
+// channel, pixels.
+LIMN_FN int pattern_side(vec3 reach, int block) {
+  float farthest = max(reach.x, max(reach.y, reach.z));
+  if (farthest < least_patterned_reach) return 1;
+  return farthest < float(block) ? min(block, 2) : block;
 }
 
-// Of a pixel `t` away along a row or column, on either side, and of the pixel itself at 0. Those of all pixels sum up to 1. In a
-// mean over the whole pattern each place counts once: with an even `block` the pixels at both ends share one.
-LIMN_FN vec3 pattern_weights(vec3 spread, int block, int t) {
-  float pairs = t == 0 ? 0.5f : t == 1 ? 0.25f : 0.0f;
-  float all = t <= block / 2 ? (2 * t == block ? 0.5f : 1.0f) / float(block) : 0.0f;
-  vec3 mean = mix(vec3(pairs), vec3(all), clamp(spread - 1.0f, vec3(0.0f), vec3(1.0f)));
-  return mix(vec3(t == 0 ? 1.0f : 0.0f), mean, min(spread, vec3(1.0f)));
+// Which of the block x block sets of points a pixel draws. A smaller pattern has sets that lie evenly among all.
+LIMN_FN int pattern_set(ivec2 pixel, int side, int block) {
+  return (pixel.x % side + side * (pixel.y % side)) * (block * block) / (side * side);
 }
 
-// The pixels to either side that have weights.
-LIMN_FN int pattern_reach(vec3 spread, int block) {
-  float most = max(spread.x, max(spread.y, spread.z));
-  return most > 1.0f ? block / 2 : most > 0.0f ? 1 : 0;
+// How much of the mean each channel has, 0 to 1: none where its light gets less far than least_patterned_reach, all of it from twice
+// as far on.
+LIMN_FN vec3 pattern_shares(vec3 reach) { return clamp(reach / least_patterned_reach - 1.0f, vec3(0.0f), vec3(1.0f)); }
+
+// In the mean, of a pixel `t` away along a row or column, on either side, and of the pixel itself at 0. Those of all pixels sum up
+// to 1. With an even `side` the pixels at both ends share a place.
+LIMN_FN float pattern_weight(int side, int t) {
+  return t <= side / 2 ? (2 * t == side ? 0.5f : 1.0f) / float(side) : 0.0f;
 }
 
-// In the 24 digits of one float, 8 for each channel.
-LIMN_FN float pattern_spread_pack(vec3 spread) {
-  return dot(floor(spread * 127.0f + 0.5f), vec3(65536.0f, 256.0f, 1.0f));
+// Side and shares in the 24 digits of one float: 5 bits and 6 for each channel.
+LIMN_FN float pattern_pack(int side, vec3 shares) {
+  return dot(floor(shares * 63.0f + 0.5f), vec3(4096.0f, 64.0f, 1.0f)) + 262144.0f * float(side);
 }
-LIMN_FN vec3 pattern_spread_unpack(float spread) {
-  uint bits = uint(spread);
-  return vec3(float(bits >> 16u), float(bits >> 8u & 0xffu), float(bits & 0xffu)) / 127.0f;
+LIMN_FN int pattern_packed_side(float pattern) { return int(pattern) >> 18; }
+LIMN_FN vec3 pattern_packed_shares(float pattern) {
+  int bits = int(pattern);
+  return vec3(float(bits >> 12 & 63), float(bits >> 6 & 63), float(bits & 63)) / 63.0f;
 }
 
 LIMN_END

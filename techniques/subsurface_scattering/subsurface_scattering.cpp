@@ -194,8 +194,7 @@ class Passes {
         .read(gathered, Access::sampled, "gathered", "what is averaged");
     const TextureHandle blurred = pass.write(screen("means along rows", GL_RGBA32F), Access::imageStore,
                                              "blurred", "means over like neighbours");
-    run(pass, {.files = {shader("blur")}, .defines = {}},
-        [block = block()](gpu::Program& program) { program.set("block", block); });
+    run(pass, {.files = {shader("blur")}, .defines = {}});
     return blurred;
   }
 
@@ -209,14 +208,11 @@ class Passes {
         .read(gathered, Access::sampled, "gathered", "light that enters around pixels");
     const TextureHandle result =
         pass.write(target, Access::imageLoadStore, "radiance", "light that left bodies");
-    run(pass, std::move(program), [blurred, block = block()](gpu::Program& bound) {
-      if (blurred) bound.set("block", block);
-    });
+    run(pass, std::move(program));
     return result;
   }
 
  private:
-  int block() const { return inputs_.parameters.integer("block"); }
   bool anyTextured() const { return !bodies_.draws.empty(); }
   static std::string shader(const char* name) {
     return std::string("techniques/subsurface_scattering/") + name + ".comp.glsl";
@@ -227,12 +223,10 @@ class Passes {
   }
 
   /// Lets the pass dispatch one invocation for each pixel.
-  template <class Bind>
-  void run(frame::PassBuilder& pass, gpu::ProgramDesc description, Bind bind) {
+  void run(frame::PassBuilder& pass, gpu::ProgramDesc description) {
     const auto program = pass.program(std::move(description));
-    pass.execute([program, bind, size = inputs_.size](frame::PassContext& context) {
-      gpu::Program& bound = context.use(program);
-      bind(bound);
+    pass.execute([program, size = inputs_.size](frame::PassContext& context) {
+      context.use(program);
       context.dispatch(size.x, size.y, 1, kGroup, kGroup);
     });
   }
@@ -250,7 +244,7 @@ class Passes {
         pass.write(screen("planes of bodies", GL_RGBA32UI), Access::imageStore, "planes", "what points meet");
     entries_ = pass.write(screen("light that enters", GL_RG32UI), Access::imageStore, "entries",
                           "what points find there");
-    run(pass, {.files = {shader("irradiance")}, .defines = {}}, [](gpu::Program&) {});
+    run(pass, {.files = {shader("irradiance")}, .defines = {}});
   }
 
   /// Requests maps of the lights if light is to enter where the camera does not look.
