@@ -23,6 +23,19 @@ class TuneCommand : public testing::Test {
     return arguments;
   }
   Outcome tune(std::vector<std::string> more) const { return limn(command(std::move(more))); }
+  /// Changes every line of the results in place.
+  template <class Change>
+  void changeRows(Change change) const {
+    const fs::path file = folder_ / "out/results.jsonl";
+    std::string rows;
+    std::istringstream lines(contents(file));
+    for (std::string line; std::getline(lines, line);) {
+      auto row = nlohmann::ordered_json::parse(line);
+      change(row);
+      rows += row.dump() + "\n";
+    }
+    std::ofstream(file) << rows;
+  }
 
   const TemporaryFolder folder_;
 };
@@ -107,15 +120,7 @@ TEST_F(TuneCommand, WhatFailsHereIsNoAnswerThoughAnotherMachineMeasuredIt) {
                                  "misbehaver.way=once_there", "--max-error", "rmse=10"});
   const Outcome first = limn(question, environment);
   ASSERT_EQ(first.status, 0) << first.err;
-  const fs::path file = folder_ / "out/results.jsonl";
-  std::string rows;
-  std::istringstream lines(contents(file));
-  for (std::string line; std::getline(lines, line);) {
-    auto row = nlohmann::ordered_json::parse(line);
-    row["stats"]["machine"] = "another machine";
-    rows += row.dump() + "\n";
-  }
-  std::ofstream(file) << rows;
+  changeRows([](nlohmann::ordered_json& row) { row["stats"]["machine"] = "another machine"; });
   std::ofstream(folder_ / "trigger") << "now";
   const Outcome second = limn(question, environment);
   EXPECT_EQ(second.status, 1) << second.out;
@@ -131,15 +136,7 @@ TEST_F(TuneCommand, InfiniteErrorsTellNoSettingsApart) {
       "1e6",          "--metric",        "rel_mse"};
   const Outcome first = tune(question);
   ASSERT_EQ(first.status, 0) << first.err;
-  const fs::path file = folder_ / "out/results.jsonl";
-  std::string rows;
-  std::istringstream lines(contents(file));
-  for (std::string line; std::getline(lines, line);) {
-    auto row = nlohmann::ordered_json::parse(line);
-    row["error"]["rel_mse"] = nullptr;
-    rows += row.dump() + "\n";
-  }
-  std::ofstream(file) << rows;
+  changeRows([](nlohmann::ordered_json& row) { row["error"]["rel_mse"] = nullptr; });
   const Outcome second = tune(question);
   EXPECT_EQ(second.status, 1) << second.out;
   EXPECT_THAT(second.err, testing::AllOf(testing::HasSubstr("the relative MSE of "),
