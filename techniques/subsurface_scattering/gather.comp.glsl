@@ -235,6 +235,6 @@ void main() {
 #endif
     mean += hidden;
 #endif
-    imageStore(gathered, pixel, vec4(mean, pattern_pack(side, pattern_shares(pixels))));
+    imageStore(gathered, pixel, vec4(mean, pattern_pack(side, pattern_narrow(pixels, side), pattern_shares(pixels))));
   }
 }

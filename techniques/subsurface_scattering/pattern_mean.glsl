@@ -44,20 +44,21 @@ vec4 pattern_mean(ivec2 pixel, uvec4 own, ivec2 axis) {
   centre.plane = uintBitsToFloat(own.xyz);
   centre.place = pixel_ray(pixel) / dot(centre.plane, pixel_ray(pixel));
   centre.squared = dot(centre.plane, centre.plane);
-  float weights = pattern_weight(side, 0);
+  bool narrow = pattern_packed_narrow(gathered_here.a);
+  float weights = pattern_weight(side, narrow, 0);
   vec3 sum = weights * gathered_here.rgb;
-  for (int t = 1; t <= side / 2; ++t) {
+  for (int t = 1, end = pattern_end(side, narrow); t <= end; ++t) {
     bool after = counts(centre, pixel + t * axis);
     bool before = counts(centre, pixel - t * axis);
-    if (!after && !before) continue;
-    float weight = pattern_weight(side, t);
+    if (!after && !before) break;
+    float weight = pattern_weight(side, narrow, t);
     vec3 pair = vec3(0.0);
     if (after) pair += texelFetch(gathered, pixel + t * axis, 0).rgb;
     if (before) pair += texelFetch(gathered, pixel - t * axis, 0).rgb;
     sum += weight * (after && before ? pair : 2.0 * pair);
     weights += 2.0 * weight;
   }
-  vec3 mean = mix(gathered_here.rgb, sum / weights, pattern_packed_shares(gathered_here.a));
+  vec3 mean = mix(gathered_here.rgb, max(sum / weights, vec3(0.0)), pattern_packed_shares(gathered_here.a));
   return vec4(mean, gathered_here.a);
 }
 
