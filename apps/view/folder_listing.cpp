@@ -4,6 +4,9 @@
 
 #include <algorithm>
 
+#include "core/base/text.h"
+#include "core/scene_io/load.h"
+
 namespace limn::app {
 namespace {
 
@@ -11,17 +14,11 @@ namespace fs = std::filesystem;
 
 /// Other systems write MODEL.GLB, which is read by what it holds.
 bool isScene(const fs::path& file) {
-  std::string extension = file.extension().string();
-  for (char& c : extension)
-    if (c >= 'A' && c <= 'Z') c = static_cast<char>(c - 'A' + 'a');
+  const std::string extension = lowerCase(file.extension().string());
   return extension == ".gltf" || extension == ".glb";
 }
 
 }  // namespace
-
-bool isEnvironment(const fs::path& file) {
-  return file.extension() == ".hdr" || file.extension() == ".exr";
-}
 
 FolderListing listFolder(const fs::path& folder) {
   FolderListing listing;
@@ -35,7 +32,7 @@ FolderListing listFolder(const fs::path& folder) {
     if (name.native().front() == '.') continue;
     if (entry->is_directory(unknown))
       listing.folders.push_back(name);
-    else if (entry->is_regular_file(unknown) && (isScene(name) || isEnvironment(name)))
+    else if (entry->is_regular_file(unknown) && (isScene(name) || scene::isEnvironmentFile(name)))
       listing.files.push_back(name);
   }
   if (error) listing.problem = fmt::format("{}: {}", listing.folder.string(), error.message());

@@ -7,9 +7,6 @@
 
 namespace limn::app {
 
-/// Returns whether the file is an environment map, by its name: .hdr or .exr.
-bool isEnvironment(const std::filesystem::path& file);
-
 /// Holds the content of a folder: names, sorted.
 struct FolderListing {
   std::filesystem::path folder;                ///< absolute

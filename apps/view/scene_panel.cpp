@@ -10,6 +10,7 @@
 #include "apps/view/viewer_window.h"
 #include "core/question/question_fields.h"
 #include "core/question/term.h"
+#include "core/scene_io/load.h"
 
 namespace limn::app {
 namespace {
@@ -217,7 +218,7 @@ void ViewerWindow::environmentPanel() {
     for (const char* own : {"sky", "studio"}) offer(own, own);
     const fs::path folder = now.has_parent_path() ? now.parent_path() : fs::path(".");
     for (const fs::path& name : listFolder(folder).files)
-      if (isEnvironment(name)) offer(name.string(), folder / name);
+      if (scene::isEnvironmentFile(name)) offer(name.string(), folder / name);
     ImGui::EndCombo();
   }
   bool turned = false;

@@ -20,6 +20,7 @@
 #include "core/base/error.h"
 #include "core/base/file.h"
 #include "core/question/question_fields.h"
+#include "core/scene_io/load.h"
 #include "core/session/find.h"
 
 namespace limn::app {
@@ -129,7 +130,7 @@ void ViewerWindow::listen() {
 /// A scene, or an environment for the one that is shown. What the command line says of a scene is said of the
 /// first one.
 void ViewerWindow::openFile(const std::filesystem::path& file) {
-  if (isEnvironment(file)) {
+  if (scene::isEnvironmentFile(file)) {
     SceneQuestion wanted = awaited();
     wanted.environment = file.string();
     open(wanted);

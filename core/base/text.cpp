@@ -36,7 +36,10 @@ size_t wholeCharacters(std::string_view text, size_t limit) {
 }  // namespace
 
 std::optional<double> parseNumber(std::string_view text) {
-  if (!text.empty() && text.front() == '+') text.remove_prefix(1);
+  if (text.starts_with('+')) {
+    text.remove_prefix(1);
+    if (text.starts_with('-')) return std::nullopt;
+  }
   double value = 0;
   const auto [end, error] = std::from_chars(text.data(), text.data() + text.size(), value);
   if (error != std::errc() || end != text.data() + text.size() || !std::isfinite(value)) return std::nullopt;
@@ -52,6 +55,13 @@ std::optional<Integer> parseWhole(std::string_view text) {
 }
 template std::optional<int> parseWhole(std::string_view text);
 template std::optional<std::size_t> parseWhole(std::string_view text);
+
+std::string lowerCase(std::string_view text) {
+  std::string lower(text);
+  for (char& c : lower)
+    if (c >= 'A' && c <= 'Z') c = static_cast<char>(c - 'A' + 'a');
+  return lower;
+}
 
 std::string oneLine(std::string_view text, size_t limit) {
   text = text.substr(0, text.find_last_not_of(" \t\r\n") + 1);  // npos + 1 is 0

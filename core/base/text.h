@@ -22,6 +22,9 @@ LIMN_API std::optional<Integer> parseWhole(std::string_view text);
 extern template std::optional<int> parseWhole(std::string_view text);
 extern template std::optional<std::size_t> parseWhole(std::string_view text);
 
+/// Returns `text` with the capitals of ASCII in lower case: names on other systems may be in capitals.
+LIMN_API std::string lowerCase(std::string_view text);
+
 /// Returns `text` as messages show it: one line without trailing white space, line ends and other control
 /// characters as '?', and at most `limit` bytes of the text, no part of a character of UTF-8 among them.
 LIMN_API std::string oneLine(std::string_view text, size_t limit = 600);

@@ -7,9 +7,15 @@
 #include <utility>
 
 #include "core/base/error.h"
+#include "core/base/text.h"
 
 namespace limn {
 namespace {
+
+/// The names as messages show them: those of a file may hold anything.
+std::string listed(const std::vector<std::string>& channels) {
+  return oneLine(fmt::format("{}", fmt::join(channels, ", ")));
+}
 
 void checkChannelNames(const std::vector<std::string>& channels) {
   if (channels.empty() || channels.size() > static_cast<std::size_t>(kMaxImageChannels)) {
@@ -19,7 +25,8 @@ void checkChannelNames(const std::vector<std::string>& channels) {
   std::sort(sorted.begin(), sorted.end());
   if (sorted.front().empty()) throw Error("image: a channel without a name");
   const auto repeated = std::adjacent_find(sorted.begin(), sorted.end());
-  if (repeated != sorted.end()) throw Error(fmt::format("image: two channels named '{}'", *repeated));
+  if (repeated != sorted.end())
+    throw Error(fmt::format("image: two channels named '{}'", oneLine(*repeated)));
 }
 
 std::size_t checkedValueCount(std::int64_t width, std::int64_t height, std::size_t channels) {
@@ -55,8 +62,7 @@ std::optional<int> Image::findChannel(std::string_view name) const {
 
 int Image::channel(std::string_view name) const {
   const std::optional<int> found = findChannel(name);
-  if (!found)
-    throw Error(fmt::format("image: no channel '{}'; there are {}", name, fmt::join(channels_, ", ")));
+  if (!found) throw Error(fmt::format("image: no channel '{}'; there are {}", name, listed(channels_)));
   return *found;
 }
 
@@ -66,7 +72,7 @@ std::array<int, 3> Image::rgbChannels(std::string_view name) const {
   const std::optional<int> y = findChannel("Y");
   if (y) return {*y, *y, *y};
   if (channelCount() == 1) return {0, 0, 0};
-  throw Error(fmt::format("{}: no channels R, G, B or Y; there are {}", name, fmt::join(channels_, ", ")));
+  throw Error(fmt::format("{}: no channels R, G, B or Y; there are {}", name, listed(channels_)));
 }
 
 void Image::addChannel(std::string name, std::span<const float> values) {

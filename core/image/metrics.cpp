@@ -304,8 +304,8 @@ std::optional<double> noiseFloor(const Image& reference, std::span<const float> 
   if (found == reference.metadata().end()) return std::nullopt;
   const std::optional<double> relative = parseNumber(found->second);
   if (!relative || *relative < 0) {
-    throw Error(
-        fmt::format("compare: the reference's noise_rms is '{}'; a number >= 0 is accepted", found->second));
+    throw Error(fmt::format("compare: the reference's noise_rms is '{}'; a number >= 0 is accepted",
+                            oneLine(found->second, 60)));
   }
   double mean = 0;
   for (const float value : rgb) mean += value;

@@ -5,21 +5,13 @@
 
 #include "core/base/error.h"
 #include "core/render/private/implementation.h"
+#include "core/scene/environment_light.h"
 #include "core/technique/bound.h"
 #include "core/technique/light_batch.h"
 #include "core/technique/module.h"
 #include "glsl/materials/material_model.glsl"
 
 namespace limn::render {
-
-namespace {
-
-bool isBlack(const scene::Environment& environment) {
-  const auto black = [](const glm::vec3& texel) { return texel == glm::vec3(0); };
-  return environment.scale == 0 || std::ranges::all_of(environment.texels, black);
-}
-
-}  // namespace
 
 void Renderer::Implementation::build() {
   noteEmitting();
@@ -182,7 +174,7 @@ void Renderer::Implementation::addEnvironment(std::span<Lighting> lightings) {
   Use* use = answering(Term::environment);
   if (!forced(Saving::environment)) {
     if (!scene.environment) why = "no environment";
-    if (scene.environment && !use && isBlack(scene.environment)) why = "the environment is black";
+    if (scene.environment && !use && scene::isBlack(scene.environment)) why = "the environment is black";
   }
   if (scene.environment && settings.light >= 0) why = "another light was chosen";
   if (!why && !use && !scene.environment.lights.empty()) why = "lights stand for it";

@@ -37,23 +37,28 @@ std::optional<AffineUv> affineUv(const Primitive& p, const Quad& quad) {
   return uv;
 }
 
-/// Mean radiance of each cell, the first row where t is 0.
+/// Mean radiance of each cell, the first row where t is 0. A cell of many texels is read from the level where
+/// it has about 64, and at most 64 along a side: files may hold thousands of such rectangles.
 TexelGrid meanRadiance(const Scene& scene, const Material& material, const AffineUv& uv) {
-  constexpr int n = kTexturedLightCells, kMostSamples = 64;
+  constexpr int n = kTexturedLightCells;
+  constexpr double kTexels = 64, kMostAlong = 64;
   const glm::dvec2 texels(textureSize(scene, material.emissiveTexture));
-  const double across = std::max(glm::length(uv.alongU * texels), glm::length(uv.alongV * texels)) / n;
-  const int samples = static_cast<int>(std::clamp(std::ceil(across), 1.0, double{kMostSamples}));
-  const auto lod = static_cast<float>(std::log2(std::max(across / samples, 1.0)));
+  const double alongU = std::max(glm::length(uv.alongU * texels) / n, 1.0),
+               alongV = std::max(glm::length(uv.alongV * texels) / n, 1.0);
+  const double lod = std::max(
+      {0.0, 0.5 * std::log2(alongU * alongV / kTexels), std::log2(std::max(alongU, alongV) / kMostAlong)});
+  const int across = static_cast<int>(std::ceil(alongU / std::exp2(lod))),
+            down = static_cast<int>(std::ceil(alongV / std::exp2(lod)));
   TexelGrid grid{n, n, std::vector<glm::dvec3>(n * n), std::vector<double>(n * n, 1.0)};
   for (int cell = 0; cell < n * n; ++cell) {
     glm::dvec3 sum(0);
-    for (int i = 0; i < samples * samples; ++i) {
-      const double s = (cell % n + (i % samples + 0.5) / samples) / n,
-                   t = (cell / n + (i / samples + 0.5) / samples) / n;
-      sum += glm::dvec3(sampleTexture(scene, material.emissiveTexture, glm::vec2(uv.at(s, t)), lod));
+    for (int i = 0; i < across * down; ++i) {
+      const double s = (cell % n + (i % across + 0.5) / across) / n,
+                   t = (cell / n + (i / across + 0.5) / down) / n;
+      sum += glm::dvec3(
+          sampleTexture(scene, material.emissiveTexture, glm::vec2(uv.at(s, t)), static_cast<float>(lod)));
     }
-    grid.energy[static_cast<std::size_t>(cell)] =
-        glm::dvec3(material.emission) * sum / double(samples * samples);
+    grid.energy[static_cast<std::size_t>(cell)] = glm::dvec3(material.emission) * sum / double(across * down);
   }
   return grid;
 }

@@ -49,6 +49,11 @@ auto bilinearOf(const Environment& map, const glm::vec2& uv, const Value& value)
 
 }  // namespace
 
+bool isBlack(const Environment& environment) {
+  const auto black = [](const glm::vec3& texel) { return texel == glm::vec3(0); };
+  return environment.scale == 0 || std::ranges::all_of(environment.texels, black);
+}
+
 EnvironmentLight::EnvironmentLight(const Environment& environment) : environment_(environment) {
   const int width = environment.width, height = environment.height;
   if (width == 0 || height == 0 || environment.scale == 0) return;

@@ -9,6 +9,10 @@
 
 namespace limn::scene {
 
+/// Returns whether no light comes from the environment: there is no map, its scale is 0 or all of it is
+/// black.
+LIMN_API bool isBlack(const Environment& environment);
+
 class LIMN_API EnvironmentLight {
  public:
   explicit EnvironmentLight(const Environment& environment);

@@ -4,16 +4,19 @@
 #include <cmath>
 
 #include "core/base/error.h"
+#include "core/base/text.h"
 #include "core/image/image.h"
 #include "core/scene_io/load.h"
 
 namespace limn::scene {
 
+bool isEnvironmentFile(const std::filesystem::path& file) {
+  const std::string extension = lowerCase(file.extension().string());
+  return extension == ".exr" || extension == ".hdr";
+}
+
 Environment loadEnvironment(const std::filesystem::path& file, std::vector<std::string>& warnings) {
-  std::string extension = file.extension().string();
-  for (char& c : extension)  // other systems write SKY.HDR
-    if (c >= 'A' && c <= 'Z') c = static_cast<char>(c - 'A' + 'a');
-  if (extension != ".exr" && extension != ".hdr")
+  if (!isEnvironmentFile(file))
     throw Error(fmt::format("{}: an environment is an equirectangular .exr or .hdr file", file.string()));
   const Image image = readImage(file);
   const std::array<int, 3> rgb = image.rgbChannels(file.string());

@@ -158,9 +158,18 @@ void Loader::readSceneExtras() {
 }
 
 void Loader::checkResult() const {
-  const Bounds bounds = evaluate(scene_, 0).bounds;
-  if (!bounds.empty() && !std::isfinite(bounds.radius()))
+  const Pose pose = evaluate(scene_, 0);
+  if (!pose.bounds.empty() && !std::isfinite(pose.bounds.radius()))
     fail("the scene's extent is not a finite number; check the scales of its nodes");
+  const auto check = [&](const glm::vec3& place, const char* kind, const std::string& name) {
+    if (!std::isfinite(place.x) || !std::isfinite(place.y) || !std::isfinite(place.z))
+      fail(fmt::format("the place of {} '{}' is not finite; check the scales of the nodes above it", kind,
+                       name));
+  };
+  for (std::size_t i = 0; i < pose.lights.size(); ++i)
+    check(pose.lights[i].position, "light", pose.lightNames[i]);
+  for (const CameraPose& camera : pose.cameras)
+    check(glm::vec3(camera.worldToView[3]), "camera", camera.name);
 }
 
 Scene Loader::load(std::span<const std::byte> bytes) {

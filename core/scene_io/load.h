@@ -15,7 +15,8 @@ struct LoadLimits {
   uint64_t vertices = 200'000'000;  ///< elements of all attributes, indices, morph targets and animations
   uint64_t imageTexels = 1ull << 28;
   int nodes = 1'000'000;
-  uint64_t instances = 10'000'000;  ///< drawn primitives; joint matrices; morph weights
+  /// Drawn primitives; joint matrices; lights that emissive rectangles are; morph weights.
+  uint64_t instances = 10'000'000;
 };
 
 /// Loads glTF 2.0 (.gltf, .glb). When the centre of the drawn geometry lies more than 64 of its radii from
@@ -33,6 +34,8 @@ LIMN_API std::vector<std::filesystem::path> filesOf(const std::filesystem::path&
 /// finite.
 inline constexpr float kMostEnvironmentRadiance = 1e12f;
 
+/// Returns whether the file is an environment map, by its name: .hdr or .exr, in capitals as well.
+LIMN_API bool isEnvironmentFile(const std::filesystem::path& file);
 /// Loads an equirectangular .hdr or .exr. Pixels below 0 or above kMostEnvironmentRadiance are clamped to
 /// that range, and a line is added to `warnings` with their number. Throws Error for NaN and infinities.
 LIMN_API Environment loadEnvironment(const std::filesystem::path& file, std::vector<std::string>& warnings);

@@ -100,6 +100,20 @@ bool integersFit(const json& value) {
   return true;
 }
 
+/// tinygltf holds whole numbers of extras and extensions as int, where larger ones would turn into others:
+/// these become reals, which it keeps. `untyped` says whether `value` belongs to either.
+void keepLargeNumbers(json& value, bool untyped = false) {
+  if (value.is_object()) {
+    for (const auto& [name, member] : value.items())
+      keepLargeNumbers(member, untyped || name == "extras" || name == "extensions");
+  } else if (value.is_array()) {
+    for (json& element : value) keepLargeNumbers(element, untyped);
+  } else if (untyped && value.is_number_integer()) {
+    const auto number = value.get<std::int64_t>();  // of 53 bits: integersFit()
+    if (number != static_cast<int>(number)) value = static_cast<double>(number);
+  }
+}
+
 }  // namespace
 
 Container openContainer(std::span<const std::byte> bytes, const std::string& name) {
@@ -235,6 +249,7 @@ void Loader::parse(const Container& container, tinygltf::Model& model) {
   takeImages(document);
   decodeViews(document);
   decodeDraco(document);
+  keepLargeNumbers(root);
 
   const std::string text = root.dump();
   if (text.size() > std::numeric_limits<unsigned>::max()) fail("more than 4 GiB of JSON");

@@ -130,6 +130,7 @@ void Loader::decodeDraco(Document& document) {
       mesh.bytes =
           bufferBytes(views[view].at("buffer").get<int>(), views[view].value("byteOffset", std::uint64_t{0}),
                       views[view].at("byteLength").get<std::uint64_t>(), what);
+      spend(mesh.bytes.size() / 16, what);  // which many primitives may name, and the request repeats
       for (const DracoAttribute& attribute : mesh.attributes)
         spend((mesh.vertices * attribute.components + 3) / 4, what);
       spend(mesh.indices, what);

@@ -76,9 +76,7 @@ std::vector<unsigned char> dataOf(const std::string& uri) {
 
 bool isDataUri(std::string_view uri) {
   constexpr std::string_view scheme = "data:";  // in capitals as well: RFC 3986, 3.1
-  return uri.size() >= scheme.size() &&
-         std::equal(scheme.begin(), scheme.end(), uri.begin(),
-                    [](char wanted, char c) { return wanted == (c >= 'A' && c <= 'Z' ? c - 'A' + 'a' : c); });
+  return lowerCase(uri.substr(0, scheme.size())) == scheme;
 }
 
 std::filesystem::path Loader::resolve(const std::string& uri, const std::string& what) const {
@@ -137,9 +135,10 @@ std::vector<std::filesystem::path> filesOf(const std::filesystem::path& scene) {
   const std::filesystem::path folder = scene.has_parent_path() ? scene.parent_path() : ".";
   const auto add = [&](const std::string& text) {
     constexpr std::size_t longest = 4096;
+    if (text.empty() || text.size() > longest) return;  // a data URI may be a large one
     const std::string name = percentDecoded(text);
     const std::filesystem::path relative(name);
-    if (text.empty() || text.size() > longest || name.find('\0') != std::string::npos) return;
+    if (name.find('\0') != std::string::npos) return;
     if (relative.is_absolute() || std::find(relative.begin(), relative.end(), "..") != relative.end()) return;
     std::error_code ignored;
     if (!known.insert(name).second || !std::filesystem::is_regular_file(folder / name, ignored)) return;

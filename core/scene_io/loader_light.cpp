@@ -49,8 +49,8 @@ int Loader::readLightTexture(const tinygltf::Value& index, uint32_t type, const 
     warn(what + ": only spots shine through a texture; it is ignored");
     return kNone;
   }
-  const double given = index.IsNumber() ? index.GetNumberAsDouble() : -1;
-  if (!(given >= 0 && given < static_cast<double>(model_->textures.size())))
+  const int given = index.IsInt() ? index.GetNumberAsInt() : kNone;
+  if (given < 0 || static_cast<std::size_t>(given) >= model_->textures.size())
     fail(fmt::format("{}: the index of one of the {} textures is accepted", what, model_->textures.size()));
   const int image = readTextureImage(model_->textures[static_cast<std::size_t>(given)], true, what);
   if (image == kNone) return kNone;

@@ -56,6 +56,15 @@ double unitError(const glm::vec3& v) {
   return std::abs(glm::length(glm::dvec3(v)) - 1);
 }
 
+/// Says whether a material has tangents for its height map alone, whose u rises another way than a file's
+/// tangents do: those belong to the first set of coordinates, as it is before KHR_texture_transform.
+bool mapTurnsTangents(const Material& material, const UvUse& uvs) {
+  if (material.height == kNone || material.normalTexture.image != kNone ||
+      (material.model && glsl::model_anisotropic(*material.model)))
+    return false;
+  return uvs.set != 0 || uvs.rotation != 0 || uvs.scale.x < 0 || uvs.scale.y < 0;
+}
+
 }  // namespace
 
 void Loader::readMeshes() {
@@ -121,10 +130,13 @@ void Loader::readAttributes(const tinygltf::Primitive& source, Primitive& out, c
   if (const int normal = attribute(attributes, "NORMAL"); normal != kNone)
     out.normals = toVec3(readFloats(normal, {3}, count, what + " NORMAL"));
   const Material& material = scene_.materials[static_cast<std::size_t>(out.material)];
-  if (const int tangent = attribute(attributes, "TANGENT"); tangent != kNone && material.tangents())
+  if (const int tangent = attribute(attributes, "TANGENT");
+      tangent != kNone && material.tangents() &&
+      !mapTurnsTangents(material, uvUses_[static_cast<std::size_t>(out.material)]))
     out.tangents = toVec4(readFloats(tangent, {4}, count, what + " TANGENT"));
   if (const int colour = attribute(attributes, "COLOR_0"); colour != kNone)
     out.colours = toVec4(readFloats(colour, {3, 4}, count, what + " COLOR_0"));
+  for (glm::vec4& c : out.colours) c = glm::clamp(c, 0.f, 1.f);  // glTF 2.0, section 3.7.2.1
   // Coefficients say what their surface reflects; of its colours only a mask's alpha is left.
   if (material.subsurface && !material.subsurface->albedoFromBaseColour) {
     if (material.alphaCutoff == 0) out.colours.clear();

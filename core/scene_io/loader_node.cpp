@@ -20,6 +20,16 @@ std::string label(const char* kind, std::size_t index, const std::string& name) 
   return name.empty() ? fmt::format("{} {}", kind, index) : fmt::format("{} {} '{}'", kind, index, name);
 }
 
+/// How many lights each mesh is where it is drawn once: the parts of its emissive rectangles.
+std::vector<std::uint64_t> lightsOf(const std::vector<Mesh>& meshes) {
+  std::vector<std::uint64_t> lights;
+  for (const Mesh& mesh : meshes) {
+    lights.push_back(0);
+    for (const Primitive& primitive : mesh.primitives) lights.back() += primitive.emissiveParts.size();
+  }
+  return lights;
+}
+
 int lightOf(const tinygltf::Node& node) {
   const auto found = node.extensions.find("KHR_lights_punctual");
   if (found == node.extensions.end() || !found->second.IsObject()) return kNone;
@@ -142,7 +152,8 @@ Node Loader::readNode(const tinygltf::Node& source, const std::string& what) {
   node.skin = reference(source.skin, model_->skins.size(), "skin");
   const int camera = reference(source.camera, cameraIndex_.size(), "camera");
   node.camera = camera == kNone ? kNone : cameraIndex_[static_cast<std::size_t>(camera)];
-  node.light = reference(lightOf(source), scene_.lights.size(), "light");
+  // Of the file's own: each node with a limn_angle adds one to the scene's.
+  node.light = reference(lightOf(source), model_->lights.size(), "light");
   readNodeLight(source, node, what);
   readInstances(source, node, what);
   return node;
@@ -238,20 +249,23 @@ void Loader::readSkins() {
 }
 
 void Loader::checkNodeUses() {
-  std::uint64_t instances = 0, joints = 0, weights = 0;
+  const std::vector<std::uint64_t> meshLights = lightsOf(scene_.meshes);
+  std::uint64_t instances = 0, joints = 0, lights = 0, weights = 0;
   for (const Node& node : scene_.nodes) {
     if (node.mesh == kNone) continue;
     const Mesh& mesh = scene_.meshes[static_cast<std::size_t>(node.mesh)];
-    instances += std::max<std::uint64_t>(1, node.instances.size()) * mesh.primitives.size();
+    const std::uint64_t copies = std::max<std::uint64_t>(1, node.instances.size());
+    instances += copies * mesh.primitives.size();
+    lights += copies * meshLights[static_cast<std::size_t>(node.mesh)];
     weights += mesh.morphWeights.size() * mesh.primitives.size();
     if (node.skin != kNone)
       joints += scene_.skins[static_cast<std::size_t>(node.skin)].joints.size() * mesh.primitives.size();
   }
-  if (std::max({instances, joints, weights}) > limits_.instances)
+  if (std::max({instances, joints, lights, weights}) > limits_.instances)
     fail(
-        fmt::format("{} drawn primitives, {} joint matrices and {} morph weights; at most {} of each are "
-                    "accepted",
-                    instances, joints, weights, limits_.instances));
+        fmt::format("{} drawn primitives, {} joint matrices, {} lights of emissive rectangles and {} morph "
+                    "weights; at most {} of each are accepted",
+                    instances, joints, lights, weights, limits_.instances));
   for (Node& node : scene_.nodes) {
     if (node.mesh == kNone) continue;
     const Mesh& mesh = scene_.meshes[static_cast<std::size_t>(node.mesh)];

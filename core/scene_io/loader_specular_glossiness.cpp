@@ -13,17 +13,28 @@ namespace limn::scene {
 
 int Loader::readGlossiness(int index, bool another, float glossiness, glm::vec3& meanSpecular,
                            const std::string& what) {
-  std::optional<Image8> image = decodeImage(index, another, what);
-  if (!image) return kNone;
-  const glm::u8vec3 first(image->data[0], image->data[1], image->data[2]);
+  auto known = glossyImages_.find({index, glossiness});
+  if (known == glossyImages_.end()) {
+    std::optional<Image8> image = decodeImage(index, another, what);
+    if (!image) return kNone;
+    const GlossyImage added = addGlossiness(index, glossiness, *std::move(image));
+    known = glossyImages_.emplace(std::pair(index, glossiness), added).first;
+  }
+  if (known->second.varies) warn(what + ": the mean of its specular colours is used");
+  meanSpecular = known->second.meanSpecular;
+  return known->second.roughness;
+}
+
+Loader::GlossyImage Loader::addGlossiness(int index, float glossiness, Image8 image) {
+  const glm::u8vec3 first(image.data[0], image.data[1], image.data[2]);
   const auto& colour = byteValues(true);
   glm::dvec3 sum(0);
-  bool varies = false;
-  for (std::size_t i = 0; i < image->data.size(); i += 4) {
-    std::uint8_t* texel = &image->data[i];
+  GlossyImage result;
+  for (std::size_t i = 0; i < image.data.size(); i += 4) {
+    std::uint8_t* texel = &image.data[i];
     for (int c = 0; c < 3; ++c) {
       sum[c] += static_cast<double>(colour[texel[c]]);
-      varies = varies || texel[c] != first[c];
+      result.varies = result.varies || texel[c] != first[c];
     }
     // Roughness stands in the green channel of metallic-roughness, metalness, whose factor is 0, in the blue
     // one.
@@ -32,9 +43,9 @@ int Loader::readGlossiness(int index, bool another, float glossiness, glm::vec3&
     texel[1] = static_cast<std::uint8_t>(std::lround(255.f * roughness));
     texel[3] = 255;
   }
-  meanSpecular = glm::vec3(4.0 / static_cast<double>(image->data.size()) * sum);
-  if (varies) warn(what + ": the mean of its specular colours is used");
-  return addImage(index, false, *std::move(image));
+  result.meanSpecular = glm::vec3(4.0 / static_cast<double>(image.data.size()) * sum);
+  result.roughness = addImage(index, false, std::move(image));
+  return result;
 }
 
 void Loader::applySpecularGlossiness(const tinygltf::Value& e, Material& m, std::vector<TextureUse>& uses,

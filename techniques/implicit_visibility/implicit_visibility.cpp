@@ -6,6 +6,7 @@
 #include <span>
 
 #include "core/base/error.h"
+#include "core/scene/environment_light.h"
 #include "core/scene/scene.h"
 #include "core/technique/technique.h"
 #include "techniques/implicit_visibility/display.h"
@@ -137,7 +138,7 @@ class ImplicitVisibility : public Technique {
   frame::TextureHandle addPasses(frame::FrameGraph& graph, const TechniqueInputs& inputs,
                                  const TermRequest& request) override {
     const PassRequest r{graph, inputs, request.target};
-    if (request.term == Term::environment && !shines(inputs.scene.environment)) {
+    if (request.term == Term::environment && scene::isBlack(inputs.scene.environment)) {
       graph.leaveOut("environment light", info.name, "the environment is black");
       return request.target;
     }
@@ -164,19 +165,13 @@ class ImplicitVisibility : public Technique {
 
   bool update(const scene::Pose& pose) override { return elements_ && !elements_->fits(pose); }
 
-  /// Returns whether any light comes from the environment.
-  static bool shines(const scene::Environment& environment) {
-    return environment.scale != 0 &&
-           std::ranges::any_of(environment.texels, [](const glm::vec3& t) { return t != glm::vec3(0); });
-  }
-
   /// Returns whether the environment is a light of the request: unless it is black, another one was chosen,
   /// or lights stand for it, which would count it twice.
   static bool includesEnvironment(const TechniqueInputs& inputs, const TermRequest& request) {
     const auto standsForIt = [&](uint32_t light) {
       return (inputs.pose.lights[light].flags & glsl::light_flag_environment) != 0;
     };
-    return shines(inputs.scene.environment) && !request.chosen &&
+    return !scene::isBlack(inputs.scene.environment) && !request.chosen &&
            std::ranges::none_of(request.lights, standsForIt);
   }
 

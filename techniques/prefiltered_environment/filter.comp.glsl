@@ -1,5 +1,6 @@
 // Radiance filtered by a lobe around each direction: samples of the lobe, each from the level of the chain in which a texel
-// covers as much as it does. POWER_LOBES 0: GGX lobes at normal incidence; 1: power lobes.
+// covers as much as it does. POWER_LOBES 0: GGX lobes at normal incidence; 1: power lobes. FILTERED_FORMAT: of the map, which holds
+// numbers as large as those of the source.
 #if POWER_LOBES
 #include "glsl/light/prefiltered_models.glsl"
 #else
@@ -7,12 +8,10 @@
 #endif
 
 layout(local_size_x = 8, local_size_y = 8) in;
-layout(rgba16f) writeonly uniform image2DArray filtered;
+layout(FILTERED_FORMAT) writeonly uniform image2DArray filtered;
 uniform sampler2DArray source;
 uniform float alpha;
 uniform int samples;
-
-const float largest_half = 65504.0;
 
 void main() {
   ivec3 at = ivec3(gl_GlobalInvocationID);
@@ -37,5 +36,5 @@ void main() {
                           level - float(low));
     weights += s.weight;
   }
-  imageStore(filtered, at, vec4(min(sum / weights, vec3(largest_half)), 1.0));
+  imageStore(filtered, at, vec4(sum / weights, 1.0));
 }

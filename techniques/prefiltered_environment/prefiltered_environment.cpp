@@ -70,6 +70,8 @@ constexpr int kIrradianceSize = 32;
 /// Of that picture, at most: software renderers leave the loops of a thread after 65,535 steps.
 constexpr int kMostIrradianceColumns = 1024;
 constexpr int kCoarsestSize = 8;  ///< of the chain, at least
+/// Radiance that half floats hold, which end at 65504, after sums of thousands of samples have rounded it up.
+constexpr float kMostInHalves = 65000;
 static_assert(kFilteredLevels == glsl::power_levels);
 
 constexpr uint32_t kMicrofacetKinds = 1u << glsl::model_torrance_sparrow | 1u << glsl::model_ward;
@@ -100,6 +102,15 @@ Needs needsOf(const TechniqueInputs& inputs) {
   return needs;
 }
 
+/// Returns the format of filtered radiance, means of the picture's: half floats where they hold its brightest
+/// pixel.
+GLenum filteredFormat(const scene::Environment& picture) {
+  const bool bright = std::ranges::any_of(picture.texels, [](const glm::vec3& radiance) {
+    return std::max({radiance.x, radiance.y, radiance.z}) > kMostInHalves;
+  });
+  return bright ? GL_RGBA32F : GL_RGBA16F;
+}
+
 /// Holds what surfaces look up; empty: none has needed it so far.
 struct Maps {
   TextureHandle sharp, irradiance, filtered;
@@ -112,7 +123,7 @@ class PrefilteredEnvironment : public Technique {
 
   TextureHandle addPasses(frame::FrameGraph& graph, const TechniqueInputs& inputs,
                           const TermRequest& request) override {
-    if (!scene::EnvironmentLight(inputs.scene.environment).present()) {
+    if (scene::isBlack(inputs.scene.environment)) {
       graph.leaveOut("environment light", info.name, "the environment is black");
       return request.target;
     }
@@ -135,8 +146,10 @@ class PrefilteredEnvironment : public Technique {
     make(needs.sharp, maps_.sharp, [&] { return filtering.addChain(environment, size); });
     make(true, maps_.irradiance,
          [&] { return filtering.addIrradiance(environment, size, Irradiance::whole); });
-    make(needs.ggx, maps_.filtered, [&] { return filtering.addLobes(maps_.sharp, Lobes::ggx); });
-    make(needs.power, maps_.power, [&] { return filtering.addLobes(maps_.sharp, Lobes::power); });
+    make(needs.ggx, maps_.filtered,
+         [&] { return filtering.addLobes(maps_.sharp, Lobes::ggx, filteredFormat(picture)); });
+    make(needs.power, maps_.power,
+         [&] { return filtering.addLobes(maps_.sharp, Lobes::power, filteredFormat(picture)); });
     make(needs.microfacets, maps_.microfacetLobes, [&] { return filtering.addMicrofacetLobes(); });
     make(needs.grazing, maps_.grazing,
          [&] { return filtering.addIrradiance(environment, size, Irradiance::grazing); });
@@ -204,10 +217,10 @@ class PrefilteredEnvironment : public Technique {
 
     /// Returns the radiance filtered by lobes, a level for each width: those of glsl::environment_alpha(1),
     /// (2) and so on, or of glsl::power_level_alpha(0), (1) and so on.
-    TextureHandle addLobes(TextureHandle chain, Lobes lobes) const {
+    TextureHandle addLobes(TextureHandle chain, Lobes lobes, GLenum format) const {
       const bool power = lobes == Lobes::power;
       const std::string name = power ? "environment filtered with power lobes" : "filtered environment";
-      TextureHandle filtered = graph_.createTexture(name, desc(GL_RGBA16F, size_, kFilteredLevels));
+      TextureHandle filtered = graph_.createTexture(name, desc(format, size_, kFilteredLevels));
       for (int level = 0; level < kFilteredLevels; ++level) {
         frame::PassBuilder pass =
             addPass((power ? "filter environment with power lobes, level " : "filter environment level ") +
@@ -216,14 +229,16 @@ class PrefilteredEnvironment : public Technique {
         filtered = pass.write(filtered, level == 0 ? Access::imageStore : Access::imageLoadStore,
                               ShaderName("filtered").level(level),
                               power ? "for lobes of models" : "for glossy surfaces");
-        std::map<std::string, std::string> defines{{"POWER_LOBES", power ? "1" : "0"}};
+        std::map<std::string, std::string> defines{
+            {"POWER_LOBES", power ? "1" : "0"},
+            {"FILTERED_FORMAT", format == GL_RGBA32F ? "rgba32f" : "rgba16f"}};
         if (power) defines["MATERIAL_MODELS"] = "0";
         const auto program = pass.program(shader("filter", std::move(defines)));
         pass.execute([=,
                       alpha = power ? glsl::power_level_alpha(level)
                                     : glsl::environment_alpha(static_cast<float>(level + 1)),
                       samples = samples_ << level,
-                      extent = desc(GL_RGBA16F, size_ >> level, 1)](frame::PassContext& context) {
+                      extent = desc(format, size_ >> level, 1)](frame::PassContext& context) {
           gpu::Program& kernel = context.use(program);
           kernel.set("alpha", alpha);
           kernel.set("samples", samples);

@@ -29,6 +29,7 @@ void use(const limn::scene::Scene& scene) {
     for (const auto& primitive : mesh.primitives) {
       for (const std::uint32_t index : primitive.indices) require(index < primitive.positions.size());
       require(primitive.normals.size() == primitive.positions.size());
+      for (const glm::vec4& c : primitive.colours) require(c == glm::clamp(c, 0.f, 1.f));
       require(static_cast<std::size_t>(primitive.material) < scene.materials.size());
     }
   }

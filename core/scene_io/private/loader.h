@@ -95,6 +95,12 @@ class Loader {
     std::string name, uri;
     int view = kNone;
   };
+  /// Holds what becomes of an image of specular colours and glossiness.
+  struct GlossyImage {
+    int roughness = kNone;  ///< index into Scene::images
+    glm::vec3 meanSpecular{1};
+    bool varies = false;  ///< the specular colours do
+  };
 
   // load.cpp
   void readSceneExtras();
@@ -159,6 +165,8 @@ class Loader {
                                std::vector<TextureUse>& uses, const std::string& what);
   int readGlossiness(int image, bool another, float glossiness, glm::vec3& meanSpecular,
                      const std::string& what);
+  /// Appends the image's glossiness, as roughness, to Scene::images.
+  GlossyImage addGlossiness(int index, float glossiness, Image8 image);
   // loader_material_model.cpp
   /// Returns the model that extras.limn_material describes.
   glsl::MaterialModel readModel(const tinygltf::Value& extras, const std::string& what);
@@ -292,8 +300,9 @@ class Loader {
   std::vector<ImageSource> imageSources_;
   std::vector<std::span<const std::byte>> buffers_;
   std::vector<std::vector<std::byte>> bufferStorage_;
-  std::map<std::pair<int, bool>, int> imageIndex_;  ///< (image, sRGB) to Scene::images
-  std::map<int, int> maskIndex_;                    ///< of Scene::images, to what maskOf() made of them
+  std::map<std::pair<int, bool>, int> imageIndex_;             ///< (image, sRGB) to Scene::images
+  std::map<std::pair<int, float>, GlossyImage> glossyImages_;  ///< by image and glossiness factor
+  std::map<int, int> maskIndex_;  ///< of Scene::images, to what maskOf() made of them
   /// Holds what tells resampled images apart: the index in Scene::images of what they show, and UvMap.
   using ResampledKey = std::tuple<int, bool, int, int, double, double>;
   std::map<ResampledKey, int> resampledIndex_;  ///< to Scene::images

@@ -30,6 +30,19 @@ TEST(ParseWhole, TakesWhatTheTypeHolds) {
   EXPECT_EQ(parseWhole<std::size_t>("-1"), std::nullopt) << "which is no large number";
 }
 
+TEST(ParseNumber, TakesOneSign) {
+  EXPECT_EQ(parseNumber("+2.5"), 2.5);
+  EXPECT_EQ(parseNumber("-2.5"), -2.5);
+  for (const char* other : {"+-2.5", "-+2.5", "++2.5", "+", "-", ""})
+    EXPECT_EQ(parseNumber(other), std::nullopt) << other;
+}
+
+TEST(LowerCase, ChangesCapitalsOfAsciiAlone) {
+  EXPECT_EQ(lowerCase("SKY.Hdr 9_@[`{"), "sky.hdr 9_@[`{");
+  EXPECT_EQ(lowerCase("\xc3\x89"), "\xc3\x89");
+  EXPECT_EQ(lowerCase(""), "");
+}
+
 TEST(OneLine, IsOneLine) {
   EXPECT_EQ(oneLine("a\nb\tc\x7f d \r\n"), "a?b?c? d");
   EXPECT_EQ(oneLine("a\302\23331mb\302\240c"), "a?31mb\302\240c") << "terminals obey U+009B";

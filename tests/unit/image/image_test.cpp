@@ -114,6 +114,13 @@ TEST(Image, AnswersColourForGreyPictures) {
   expectRefusal([] { Image(1, 1, {"Z", "id"}).rgbChannels("depth.exr"); }, "depth.exr: no channels R, G, B");
 }
 
+/// They may come from a file.
+TEST(Image, NamesOfChannelsAreShownInOneLine) {
+  expectRefusal([] { Image(1, 1, {"a\nb", "c\x1b"}).rgbChannels(); }, "there are a?b, c?");
+  expectRefusal([] { Image(1, 1, {"a\nb", "c\x1b"}).channel("d"); }, "no channel 'd'; there are a?b, c?");
+  expectRefusal([] { Image(1, 1, {"a\nb", "a\nb"}); }, "two channels named 'a?b'");
+}
+
 TEST_F(ImageFile, ExrKeepsEveryChannelAndTextBitForBit) {
   Image image = noise(37, 19, {"R", "G", "B", "A", "Z", "coverage", "id", "albedo.R", "N.X"});
   image.at(0, 0, 6) = 16777215.0f;

@@ -241,6 +241,8 @@ TEST(Metrics, ReadsTheNoiseOfTheReference) {
   EXPECT_NE(metricsTable(metrics).find("within it"), std::string::npos);
   reference.metadata()["noise_rms"] = "little";
   expectError([&] { compareImages(reference, reference); }, "'little'");
+  reference.metadata()["noise_rms"] = "a\nb";
+  expectError([&] { compareImages(reference, reference); }, "'a?b'");
 }
 
 /// Half of the picture is lit and known exactly, the other half is penumbra with noise.

@@ -125,6 +125,7 @@ TEST(Metaballs, ComeFromTheExtrasOfANode) {
   EXPECT_LT(glm::length(offset), 0.2f);
   EXPECT_NEAR(pose.dynamic[0].bounds.radius(), 0.45 * std::sqrt(3), 0.05);
   EXPECT_EQ(loadBuilt(withMetaballs({{"count", 2}})).dynamic.size(), 1u) << "the others by default";
+  EXPECT_EQ(loadError(withMetaballs({{"count", 2}, {"seed", UINT32_MAX}}).glb()), "") << "the largest";
 }
 
 TEST(Metaballs, NonsenseIsRefusedByName) {

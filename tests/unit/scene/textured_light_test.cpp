@@ -3,6 +3,7 @@
 #include <cmath>
 #include <random>
 
+#include "core/image/byte_values.h"
 #include "core/scene/emissive_quad.h"
 #include "core/scene/texture_lookup.h"
 #include "glsl/light/rectangle_light.glsl"
@@ -16,14 +17,16 @@ using scene::Scene;
 using testing::ElementsAre;
 using testing::HasSubstr;
 
-/// A square of 1 m in the plane z = 0 that faces +Z, with an emissive texture of 8 x 8 texels whose first row
-/// is at y = 1.
+constexpr int kRepeat = 10497, kClamp = 33071;
+
+/// A square of 1 m in the plane z = 0 that faces +Z, with an emissive texture whose first row is at y = 1.
 Scene lamp(const std::vector<std::uint8_t>& rgba,
-           const std::vector<glm::vec2>& uvs = {{0, 1}, {1, 1}, {1, 0}, {0, 0}}) {
+           const std::vector<glm::vec2>& uvs = {{0, 1}, {1, 1}, {1, 0}, {0, 0}}, glm::uvec2 size = {8, 8},
+           int wrap = kClamp) {
   GltfBuilder b;
-  const std::vector<std::byte> image = png(8, 8, rgba);
+  const std::vector<std::byte> image = png(size.x, size.y, rgba);
   b.append("images", {{"bufferView", b.view(image.data(), image.size())}, {"mimeType", "image/png"}});
-  b.append("samplers", {{"wrapS", 33071}, {"wrapT", 33071}});
+  b.append("samplers", {{"wrapS", wrap}, {"wrapT", wrap}});
   b.append("textures", {{"source", 0}, {"sampler", 0}});
   const int material =
       b.append("materials", {{"emissiveFactor", {1, 0.5, 1}}, {"emissiveTexture", {{"index", 0}}}});
@@ -97,6 +100,32 @@ TEST(TexturedLight, IrradianceIsCloseToTheTextures) {
     const double allowed = p.z < 0.5f ? 0.1 : 0.02;  // three lights for this texture
     EXPECT_NEAR(sum, expected, allowed * expected) << p.x << " " << p.y << " " << p.z;
   }
+}
+
+/// Cells of many texels are read from a smaller level, which holds the same light.
+TEST(TexturedLight, PowerIsThatOfALargeTexture) {
+  std::mt19937 random(3);
+  std::vector<std::uint8_t> rgba;
+  for (int i = 0; i < 120 * 120 * 4; ++i) rgba.push_back(static_cast<std::uint8_t>(random() % 256));
+  const Scene scene = lamp(rgba, {{0, 8}, {8, 8}, {8, 0}, {0, 0}}, {120, 120}, kRepeat);
+  glm::dvec3 expected(0), sum(0);
+  for (std::size_t i = 0; i < rgba.size(); ++i)
+    if (i % 4 != 3) expected[static_cast<int>(i % 4)] += double{byteValues(true)[rgba[i]]} / (120 * 120);
+  for (const glsl::Light& light : scene::evaluate(scene, 0).lights)
+    sum += double(light.length_u * light.length_v) * glm::dvec3(light.emission);
+  for (int c = 0; c < 3; ++c)
+    EXPECT_NEAR(sum[c] / scene.materials.at(0).emission[c], expected[c], 0.005) << c;
+}
+
+/// What is long has many texels along one side of a cell, and keeps what is told apart along the other.
+TEST(TexturedLight, ALongTextureKeepsItsRows) {
+  std::vector<std::uint8_t> rgba(1000 * 16 * 4, 255);
+  for (std::size_t i = 1000 * 8 * 4; i < rgba.size(); ++i)
+    if (i % 4 != 3) rgba[i] = 0;
+  const scene::Pose pose = scene::evaluate(lamp(rgba, {{0, 1}, {1, 1}, {1, 0}, {0, 0}}, {1000, 16}), 0);
+  ASSERT_EQ(pose.lights.size(), 1u);
+  expectNear(pose.lights[0].position, {0.5f, 0.75f, 0});
+  expectNear(pose.lights[0].emission, {1, 0.5f, 1});
 }
 
 TEST(TexturedLight, CoordinatesThatAreNoAffineMapLightNothing) {

@@ -146,6 +146,18 @@ TEST(DracoCompression, RefusesWhatDoesNotFit) {
   EXPECT_THAT(loadError(compressedGrid(std::vector<std::byte>(3)).glb()), HasSubstr(place + "not a mesh"));
 }
 
+/// Primitives that say of themselves that they are empty may all name the same large view.
+TEST(DracoCompression, WhatIsHandedToTheDecoderIsLimited) {
+  GltfBuilder b = compressedGrid(std::vector<std::byte>(16 * 100));
+  for (std::size_t i = 0; i < 5; ++i) b.root["accessors"][i]["count"] = 0;
+  json& meshes = b.root["meshes"];
+  for (int copy = 1; copy < 4; ++copy) meshes.push_back(json(meshes[0]));
+  scene::LoadLimits limits;
+  limits.vertices = 399;
+  EXPECT_THAT(loadError(b.glb(), limits),
+              AllOf(HasSubstr("mesh 3 primitive 0"), HasSubstr("exceed the limit of 399")));
+}
+
 TEST(DracoCompression, DamagedMeshesNeverCrash) {
   const std::vector<std::byte> whole = sample("edgebreaker");
   for (std::size_t i = 0; i < whole.size(); i += 1 + whole.size() / 24) {

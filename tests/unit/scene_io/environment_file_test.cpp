@@ -59,6 +59,26 @@ TEST_F(EnvironmentFile, IsReadUnderANameInCapitals) {
   EXPECT_EQ(load(capitals).texels[2 * 16].y, 2);
 }
 
+TEST_F(EnvironmentFile, IsToldByItsName) {
+  for (const char* name : {"sky.hdr", "sky.exr", "SKY.HDR", "a/sky.Exr"})
+    EXPECT_TRUE(scene::isEnvironmentFile(name)) << name;
+  for (const char* name : {"sky.png", "hdr", ".hdr", "sky.hdr.png", ""})
+    EXPECT_FALSE(scene::isEnvironmentFile(name)) << name;
+}
+
+TEST_F(EnvironmentFile, IsBlackWhereNoPixelShines) {
+  EXPECT_TRUE(scene::isBlack({})) << "there is no map";
+  scene::Environment e = load(sky({}));
+  EXPECT_FALSE(scene::isBlack(e));
+  e.scale = 0;
+  EXPECT_TRUE(scene::isBlack(e));
+  e.scale = 1;
+  std::ranges::fill(e.texels, glm::vec3(0));
+  EXPECT_TRUE(scene::isBlack(e));
+  e.texels.back().z = 1e-6f;
+  EXPECT_FALSE(scene::isBlack(e));
+}
+
 TEST_F(EnvironmentFile, WithinTheRangeIsTakenAsItIs) {
   const scene::Environment e = load(sky({0, 1e-30f, 65504, scene::kMostEnvironmentRadiance}));
   EXPECT_TRUE(warnings_.empty());

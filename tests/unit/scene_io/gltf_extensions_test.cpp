@@ -1,6 +1,7 @@
 // glTF extensions that change what a file holds: compressed buffers, and materials of other models.
 #include <meshoptimizer.h>
 
+#include <algorithm>
 #include <cmath>
 
 #include "glsl/numeric/srgb.glsl"
@@ -382,6 +383,27 @@ TEST(SpecularGlossiness, TexturesBecomeRoughnessAndAMean) {
   EXPECT_THAT(scene.warnings,
               AllOf(Contains(HasSubstr("is converted")), Contains(HasSubstr("the mean of its")),
                     Contains(HasSubstr("texture coordinates differ"))));
+}
+
+TEST(SpecularGlossiness, OneImageOfSeveralMaterialsIsReadOnce) {
+  GltfBuilder b = glossy({{"specularGlossinessTexture", {{"index", 0}}}, {"glossinessFactor", 0.5}});
+  const std::vector<std::byte> image = png(2, 1, {255, 255, 255, 255, 0, 0, 0, 0});
+  b.append("images", {{"bufferView", b.view(image.data(), image.size())}, {"mimeType", "image/png"}});
+  b.append("textures", {{"source", 0}});
+  json& materials = b.root["materials"];
+  for (int copy = 1; copy < 3; ++copy) materials.push_back(json(materials[0]));
+  materials[2]["extensions"]["KHR_materials_pbrSpecularGlossiness"]["glossinessFactor"] = 1;
+  scene::LoadLimits limits;
+  limits.imageTexels = 4;
+  const Scene scene = scene::loadMemory(b.glb(), limits);
+  EXPECT_EQ(scene.images.size(), 2u) << "one for each factor";
+  EXPECT_EQ(scene.materials.at(1).metalRoughTexture.image, scene.materials.at(0).metalRoughTexture.image);
+  EXPECT_NE(scene.materials.at(2).metalRoughTexture.image, scene.materials.at(0).metalRoughTexture.image);
+  for (const Material& m : scene.materials) expectNear(m.specularColour, glm::vec3(0.5f));
+  EXPECT_EQ(std::ranges::count_if(scene.warnings,
+                                  [](const std::string& w) { return w.find("the mean of its") < w.size(); }),
+            3)
+      << "each material says so";
 }
 
 TEST(SpecularGlossiness, WarnsOfTheMeanWhereColoursVary) {

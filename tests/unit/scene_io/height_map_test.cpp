@@ -1,4 +1,5 @@
 // extras.limn_height: what is read, shared, refused and warned of.
+#include <cmath>
 #include <limits>
 
 #include "core/image/image.h"
@@ -165,6 +166,35 @@ TEST(SceneHeightMap, WarnsWithoutTextureCoordinatesAsTexturesDo) {
   const scene::Scene scene = loadBuilt(b);
   EXPECT_THAT(scene.warnings, ElementsAre(HasSubstr("no TEXCOORD_0 for the textures of its material")));
   EXPECT_EQ(scene.meshes.at(0).primitives.at(0).uvs.size(), 3u);
+}
+
+/// The sign of a tangent's w is such that the bitangent w cross(n, t), n = +Z, points against rising v. A
+/// quarter turn makes (v, -u) of (u, v).
+TEST(SceneHeightMap, TangentsOfAFileStayUnlessTheMapTurnsThem) {
+  const float c = std::cos(0.5f), s = std::sin(0.5f);
+  const glm::vec4 own(c, s, 0, -1);
+  const auto tangent = [&](const json& transform, int set = 0) {
+    json height = heightOf(0);
+    height["texture"]["texCoord"] = set;
+    if (!transform.empty()) height["texture"]["extensions"]["KHR_texture_transform"] = transform;
+    GltfBuilder b = withHeight(height);
+    json& attributes = b.root["meshes"][0]["primitives"][0]["attributes"];
+    attributes["TANGENT"] = b.vec4({own, own, own});
+    attributes["TEXCOORD_1"] = b.vec2({{0, 0}, {0, 1}, {1, 0}});
+    const scene::Scene scene = loadBuilt(b);
+    EXPECT_THAT(scene.warnings, IsEmpty()) << transform;
+    return scene.meshes.at(0).primitives.at(0).tangents.at(0);
+  };
+  const auto expectTangent = [](const glm::vec4& found, const glm::vec4& expected) {
+    expectNear(glm::vec3(found), glm::vec3(expected), 1e-5f);
+    EXPECT_EQ(found.w, expected.w);
+  };
+  expectTangent(tangent(json::object()), own);
+  expectTangent(tangent({{"offset", {0.25, 0.5}}}), own);
+  expectTangent(tangent({{"scale", {-1, 1}}}), {-1, 0, 0, 1});
+  expectTangent(tangent({{"scale", {1, -1}}}), {1, 0, 0, 1});
+  expectTangent(tangent({{"rotation", 1.5707963}}), {0, 1, 0, -1});
+  expectTangent(tangent(json::object(), 1), {0, 1, 0, 1});
 }
 
 TEST(SceneHeightMap, WarnsOfCoordinatesThatDoNotFitItsTile) {

@@ -90,6 +90,28 @@ TEST(SceneBadInput, MorphWeightsOfAllNodesAreLimited) {
   EXPECT_THAT(loadError(b.glb(), limits), HasSubstr("12 morph weights; at most 10"));
 }
 
+/// Each copy of a rectangle with an emissive texture is many lights.
+TEST(SceneBadInput, LightsOfEmissiveRectanglesAreLimited) {
+  GltfBuilder b;
+  const std::vector<std::byte> image = png(2, 1, {255, 255, 255, 255, 9, 9, 9, 255});
+  b.append("images", {{"bufferView", b.view(image.data(), image.size())}, {"mimeType", "image/png"}});
+  b.append("textures", {{"source", 0}});
+  b.append("materials", {{"emissiveFactor", {1, 1, 1}}, {"emissiveTexture", {{"index", 0}}}});
+  const int positions = b.vec3({{0, 0, 0}, {1, 0, 0}, {1, 1, 0}, {0, 1, 0}});
+  const int uvs = b.vec2({{0, 1}, {1, 1}, {1, 0}, {0, 0}});
+  b.meshNode(b.mesh({{"POSITION", positions}, {"TEXCOORD_0", uvs}}, b.indices({0, 1, 2, 0, 2, 3}), 0));
+  b.root["nodes"][0]["extensions"]["EXT_mesh_gpu_instancing"] = {
+      {"attributes", {{"TRANSLATION", b.vec3({{0, 0, 0}, {2, 0, 0}, {4, 0, 0}})}}}};
+  const std::size_t lights = scene::evaluate(loadBuilt(b), 0).lights.size();
+  ASSERT_GT(lights, 3u) << "more than there are rectangles";
+  scene::LoadLimits limits;
+  limits.instances = lights;
+  EXPECT_EQ(loadError(b.glb(), limits), "");
+  limits.instances = lights - 1;
+  EXPECT_THAT(loadError(b.glb(), limits),
+              HasSubstr(std::to_string(lights) + " lights of emissive rectangles"));
+}
+
 TEST(SceneBadInput, AccessorOutOfRange) {
   GltfBuilder b;
   b.triangle();
@@ -153,6 +175,15 @@ TEST(SceneBadInput, NotFiniteTransforms) {
   d.root["nodes"][0]["scale"] = {3e38, 3e38, 3e38};
   d.node({{"children", {0}}, {"scale", {3e38, 3e38, 3e38}}});
   EXPECT_THAT(loadError(d.glb()), HasSubstr("extent is not a finite number"));
+  GltfBuilder e;
+  e.light({{"type", "point"}}, {{"name", "lamp"}, {"translation", {0, 0, 100}}});
+  e.node({{"children", {0}}, {"scale", {1, 1, 3e38}}});
+  EXPECT_THAT(loadError(e.glb()), HasSubstr("the place of light 'lamp' is not finite"));
+  GltfBuilder f;
+  f.append("cameras", {{"type", "perspective"}, {"perspective", {{"yfov", 1}, {"znear", 0.1}}}});
+  f.node({{"name", "eye"}, {"camera", 0}, {"translation", {100, 0, 0}}});
+  f.node({{"children", {0}}, {"scale", {3e38, 1, 1}}});
+  EXPECT_THAT(loadError(f.glb()), HasSubstr("the place of camera 'eye' is not finite"));
 }
 
 /// Numbers each of which is accepted, and of which something is made that is none.
@@ -223,6 +254,11 @@ TEST(SceneBadInput, References) {
     b.node(node);
     EXPECT_THAT(loadError(b.glb()), HasSubstr(message));
   }
+  GltfBuilder light;
+  light.light({{"type", "directional"}}, {{"extras", {{"limn_angle", 0.1}}}});
+  light.node({{"extensions", {{"KHR_lights_punctual", {{"light", 1}}}}}});
+  EXPECT_THAT(loadError(light.glb()), HasSubstr("node 1: light 1 does not exist; there are 1"))
+      << "a node's own angle adds none";
   GltfBuilder material;
   material.triangle(6);
   EXPECT_THAT(loadError(material.glb()), HasSubstr("material 6 does not exist; there are 0"));
@@ -390,6 +426,9 @@ TEST(SceneBadInput, Extras) {
   GltfBuilder texture;
   texture.light({{"type", "spot"}, {"spot", {{"outerConeAngle", 0.5}}}, {"extras", {{"limn_texture", 2}}}});
   EXPECT_THAT(loadError(texture.glb()), HasSubstr("limn_texture: the index of one of the 0 textures"));
+  texture.texturedMaterial(png(1, 1, {1, 2, 3, 4}));
+  texture.root["extensions"]["KHR_lights_punctual"]["lights"][0]["extras"]["limn_texture"] = 0.5;
+  EXPECT_THAT(loadError(texture.glb()), HasSubstr("limn_texture: the index of one of the 1 textures"));
   GltfBuilder light;
   light.light({{"type", "disk"}});
   EXPECT_THAT(loadError(light.glb()), HasSubstr("type is \"disk\"; point, spot or directional is accepted"));

@@ -73,6 +73,17 @@ TEST(SceneLoad, NormalisedIntegers) {
   EXPECT_EQ(primitive.colours[0].w, 0);
 }
 
+/// glTF 2.0, section 3.7.2.1; the GPU holds no others.
+TEST(SceneLoad, ColoursAreClamped) {
+  GltfBuilder b;
+  b.triangle();
+  b.root["meshes"][0]["primitives"][0]["attributes"]["COLOR_0"] =
+      b.vec4({{2, -1, 0.5f, 3}, {0, 1, 0.25f, -0.5f}, {1, 1, 1, 1}});
+  const Scene scene = loadBuilt(b);
+  EXPECT_THAT(onlyPrimitive(scene).colours,
+              ElementsAre(glm::vec4(1, 0, 0.5f, 1), glm::vec4(0, 1, 0.25f, 0), glm::vec4(1)));
+}
+
 TEST(SceneLoad, SparseAccessor) {
   GltfBuilder b;
   b.triangle();
@@ -225,6 +236,20 @@ TEST(SceneLoad, TextureTransform) {
               ElementsAre(glm::vec2(0.5f, 0.25f), glm::vec2(2.5f, 0.25f), glm::vec2(0.5f, 4.25f)));
 }
 
+/// Coordinates turn counter-clockwise as one sees them, v downwards: what rises along u goes up the picture.
+TEST(SceneLoad, TextureRotation) {
+  GltfBuilder b;
+  const int material = b.texturedMaterial(png(1, 1, {1, 2, 3, 4}));
+  b.root["materials"][0]["pbrMetallicRoughness"]["baseColorTexture"]["extensions"]["KHR_texture_transform"] =
+      {{"offset", {0, 1}}, {"rotation", M_PI / 2}, {"scale", {0.5, 1}}};
+  b.triangle(material);
+  const Scene scene = loadBuilt(b);
+  const std::vector<glm::vec2>& uvs = onlyPrimitive(scene).uvs;
+  expectNear(glm::vec3(uvs.at(0), 0), {0, 1, 0});
+  expectNear(glm::vec3(uvs.at(1), 0), {0, 0.5f, 0});
+  expectNear(glm::vec3(uvs.at(2), 0), {1, 1, 0});
+}
+
 TEST(SceneLoad, TangentsOnlyWithNormalMap) {
   GltfBuilder b;
   b.texturedMaterial(png(1, 1, {128, 128, 255, 255}));
@@ -244,10 +269,12 @@ TEST(SceneLoad, MirroredHalvesHaveTangentsOfTheirOwn) {
   b.append("textures", {{"source", 0}});
   const int material = b.append("materials", {{"normalTexture", {{"index", 0}}}});
   const std::vector<glm::vec3> places = {{-1, 0, 0}, {0, 0, 0}, {0, 1, 0}, {1, 0, 0}};
+  std::vector<glm::vec3> colours;
+  for (const glm::vec3& place : places) colours.push_back(0.5f * place + 0.5f);
   const json attributes = {{"POSITION", b.vec3(places)},
                            {"NORMAL", b.vec3(std::vector<glm::vec3>(4, {0, 0, 1}))},
                            {"TEXCOORD_0", b.vec2({{1, 1}, {0, 1}, {0, 0}, {1, 1}})},
-                           {"COLOR_0", b.vec3(places)}};
+                           {"COLOR_0", b.vec3(colours)}};
   b.meshNode(b.mesh(attributes, b.indices({0, 1, 2, 1, 3, 2}), material));
   b.root["meshes"][0]["primitives"][0]["targets"] = json::array({{{"POSITION", b.vec3(places)}}});
   const Scene scene = loadBuilt(b);
@@ -256,9 +283,10 @@ TEST(SceneLoad, MirroredHalvesHaveTangentsOfTheirOwn) {
   for (std::size_t i = 0; i < 6; ++i) {
     const float side = i < 3 ? -1.f : 1.f;
     EXPECT_EQ(p.tangents[p.indices[i]], glm::vec4(side, 0, 0, side)) << i;
-    const glm::vec3 place = places[std::array<std::size_t, 6>{0, 1, 2, 1, 3, 2}[i]];
+    const std::size_t vertex = std::array<std::size_t, 6>{0, 1, 2, 1, 3, 2}[i];
+    const glm::vec3 place = places[vertex];
     EXPECT_EQ(p.positions[p.indices[i]], place);
-    EXPECT_EQ(p.colours[p.indices[i]], glm::vec4(place, 1));
+    EXPECT_EQ(p.colours[p.indices[i]], glm::vec4(colours[vertex], 1));
     EXPECT_EQ(p.morphTargets[0].positions[p.indices[i]], place);
   }
   b.root["meshes"][0]["primitives"][0]["attributes"]["TANGENT"] =
@@ -303,6 +331,21 @@ TEST(SceneLoad, Medium) {
   EXPECT_EQ(scene.medium.g, 0.5f);
   EXPECT_TRUE(scene.medium.present());
   EXPECT_FALSE(scene.medium.inhomogeneous());
+}
+
+/// In extras and extensions, too, whose whole numbers tinygltf holds as int.
+TEST(SceneLoad, LargeWholeNumbersAreTakenAsTheyAre) {
+  GltfBuilder b;
+  const json medium = {{"sigma_a", 4'000'000'000}, {"sigma_s", {1, 2, 5'000'000'000}}};
+  b.append("scenes", {{"extras", {{"limn_medium", medium}}}});
+  b.append("materials",
+           {{"emissiveFactor", {1, 1, 1}},
+            {"extensions", {{"KHR_materials_emissive_strength", {{"emissiveStrength", 3'000'000'000}}}}}});
+  const Scene scene = loadBuilt(b);
+  EXPECT_EQ(scene.medium.sigmaA, glm::vec3(4e9f));
+  EXPECT_EQ(scene.medium.sigmaS, glm::vec3(1, 2, 5e9f));
+  EXPECT_EQ(scene.materials.at(0).emission, glm::vec3(3e9f));
+  EXPECT_TRUE(scene.warnings.empty());
 }
 
 TEST(SceneLoad, Smoke) {
