@@ -1,5 +1,7 @@
 #include <fmt/format.h>
 
+#include <atomic>
+
 #include "core/base/error.h"
 #include "core/frame/private/access.h"
 #include "core/frame/private/graph_data.h"
@@ -7,10 +9,10 @@
 namespace limn::frame {
 namespace {
 
-/// Tells handles of graphs that live at the same time apart.
-uint32_t tagOf(const Graph* graph) {
-  const uint64_t address = reinterpret_cast<uintptr_t>(graph);
-  return static_cast<uint32_t>((address * 0x9e3779b97f4a7c15u) >> 32) | 1u;
+/// Tells handles of graphs apart, also those of a graph that is gone, in whose memory another one may lie.
+uint32_t newTag() {
+  static std::atomic<uint32_t> graphs = 0;
+  return ++graphs;
 }
 
 template <class Handle>
@@ -159,7 +161,7 @@ std::string Graph::title(uint32_t pass) const {
 }
 
 FrameGraph::FrameGraph() : implementation_(std::make_unique<Implementation>()) {
-  implementation_->tag = tagOf(implementation_.get());
+  implementation_->tag = newTag();
 }
 
 FrameGraph::~FrameGraph() = default;

@@ -109,6 +109,24 @@ Place* placeOf(Graph& graph, SlotHandle slot) {
   return nullptr;
 }
 
+/// Returns which access of the pass that executes reads or makes the contents, or else writes on top of them.
+uint32_t accessTo(const Graph& graph, TextureHandle handle) {
+  const std::vector<ResourceAccess>& all = graph.passes[graph.current].accesses;
+  const auto find = [&](uint32_t ResourceAccess::*version) {
+    return std::ranges::find_if(all, [&](const ResourceAccess& a) {
+      return a.resource == handle.resource && a.*version == handle.version;
+    });
+  };
+  auto found = find(&ResourceAccess::version);
+  if (found == all.end()) found = find(&ResourceAccess::parent);
+  if (found == all.end()) {
+    throw Error(fmt::format("pass '{}' binds '{}' (version {}), which it did not declare",
+                            graph.title(graph.current), graph.resources[handle.resource].name,
+                            handle.version));
+  }
+  return static_cast<uint32_t>(found - all.begin());
+}
+
 }  // namespace
 
 void findPlaces(Graph& graph, ProgramUse& use, std::vector<std::string>& problems) {
@@ -183,14 +201,10 @@ void PassContext::bind(SlotHandle slot, TextureHandle handle, int level, int lay
   if (place == nullptr) return;
   texture(handle);  // refuses what was not declared
   const Resource& resource = graph.resources[handle.resource];
-  const Pass& pass = graph.passes[graph.current];
-  const auto access = std::ranges::find(pass.accesses, handle.resource, &ResourceAccess::resource);
-  place->slot = {.access = static_cast<uint32_t>(access - pass.accesses.begin()),
-                 .texture = resource.textureObject,
-                 .level = level,
-                 .layer = layer};
+  const uint32_t access = accessTo(graph, handle);
+  place->slot = {.access = access, .texture = resource.textureObject, .level = level, .layer = layer};
   if (place->kind == Kind::sampler) return placeSampler(gl(), place->unit, resource.id(), nullptr);
-  placeImage(gl(), place->unit, resource, access->access, level, layer);
+  placeImage(gl(), place->unit, resource, graph.passes[graph.current].accesses[access].access, level, layer);
 }
 
 void PassContext::bind(SlotHandle slot, const gpu::Texture& texture, const gpu::Sampler* sampler) const {

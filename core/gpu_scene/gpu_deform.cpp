@@ -80,33 +80,33 @@ void GpuDeform::addRest(const Primitive& primitive, Rest& rest, std::vector<uint
 
 bool GpuDeform::update(const Pose& pose, const GpuGeometry& geometry,
                        const std::vector<GeometryRange>& targets) {
-  std::vector<Job> jobs;
-  std::vector<glm::mat4> joints;
-  std::vector<float> weights;
+  nextJobs_.clear();
+  nextJoints_.clear();
+  nextWeights_.clear();
   for (size_t i = 0; i < pose.deformed.size(); ++i) {
     const Deformation& d = pose.deformed[i];
     const Rest& rest = rest_.at({d.mesh, d.primitive});
     const GeometryRange& source = geometry.primitive(d.mesh, d.primitive);
-    Job& job = jobs.emplace_back();
+    Job& job = nextJobs_.emplace_back();
     job.first_rest = source.firstVertex;
     job.first_deformed = targets[i].firstVertex;
     job.vertices = source.vertexCount;
     job.skin = d.joints.empty() ? ~0u : rest.skin;
-    job.first_joint = static_cast<uint32_t>(joints.size());
-    job.first_weight = static_cast<uint32_t>(weights.size());
+    job.first_joint = static_cast<uint32_t>(nextJoints_.size());
+    job.first_weight = static_cast<uint32_t>(nextWeights_.size());
     job.targets = std::min(rest.targets, static_cast<uint32_t>(d.morphWeights.size()));
     job.deltas = rest.morph;
-    joints.insert(joints.end(), d.joints.begin(), d.joints.end());
-    weights.insert(weights.end(), d.morphWeights.begin(), d.morphWeights.end());
+    nextJoints_.insert(nextJoints_.end(), d.joints.begin(), d.joints.end());
+    nextWeights_.insert(nextWeights_.end(), d.morphWeights.begin(), d.morphWeights.end());
   }
-  if (jobs == jobs_ && weights == weights_ && joints == joints_) return false;
-  jobs_ = std::move(jobs);
-  weights_ = std::move(weights);
-  joints_ = std::move(joints);
+  if (nextJobs_ == jobs_ && nextWeights_ == weights_ && nextJoints_ == joints_) return false;
   static_assert(sizeof(Job) == 32);
-  store(device_, jobBuffer_, "deform jobs", jobs_.data(), jobs_.size() * sizeof(Job));
-  store(device_, jointBuffer_, "joint matrices", joints_.data(), joints_.size() * sizeof(glm::mat4));
-  store(device_, weightBuffer_, "morph weights", weights_.data(), weights_.size() * sizeof(float));
+  store(device_, jobBuffer_, "deform jobs", nextJobs_.data(), nextJobs_.size() * sizeof(Job));
+  store(device_, jointBuffer_, "joint matrices", nextJoints_.data(), nextJoints_.size() * sizeof(glm::mat4));
+  store(device_, weightBuffer_, "morph weights", nextWeights_.data(), nextWeights_.size() * sizeof(float));
+  jobs_.swap(nextJobs_);  // last: where there is no memory, the next frame stores them
+  joints_.swap(nextJoints_);
+  weights_.swap(nextWeights_);
   return true;
 }
 

@@ -53,9 +53,9 @@ class GpuDeform {
   gpu::Device& device_;
   std::map<std::pair<int, int>, Rest> rest_;
   gpu::Buffer skin_, morph_, jobBuffer_, jointBuffer_, weightBuffer_;
-  std::vector<Job> jobs_;
-  std::vector<glm::mat4> joints_;
-  std::vector<float> weights_;
+  std::vector<Job> jobs_, nextJobs_;
+  std::vector<glm::mat4> joints_, nextJoints_;
+  std::vector<float> weights_, nextWeights_;
   frame::BufferHandle jobHandle_, jointHandle_, weightHandle_;
 };
 

@@ -71,13 +71,18 @@ void DrawList::Implementation::clear() {
 
 void DrawList::Implementation::upload(gpu::Device& device) {
   for (const DrawCommand& c : commands) triangles += uint64_t{c.count / 3} * c.instanceCount;
-  if (commands.empty()) return;
+  // Most frames draw what the one before them drew, and may still be drawing it.
+  if (commands.empty() || (entries == uploadedEntries && commands == uploadedCommands)) return;
+  uploadedEntries.clear();  // should there be no memory for larger buffers
+  uploadedCommands.clear();
   const size_t entryBytes = entries.size() * sizeof(entries[0]),
                commandBytes = commands.size() * sizeof(DrawCommand);
   ensure(device, entryBuffer, "draw entries", entryBytes);
   ensure(device, commandBuffer, "draw commands", commandBytes);
   entryBuffer.update(0, entries.data(), entryBytes);
   commandBuffer.update(0, commands.data(), commandBytes);
+  entries.swap(uploadedEntries);
+  commands.swap(uploadedCommands);
 }
 
 /// Appends what the views see, in `order`: one command per primitive, one run per state.

@@ -71,9 +71,11 @@ class Upload {
   size_t offset_ = 0;
 };
 
+/// To what is asked for and no more: what changes in size asks for powers of two, and most of the buffer may
+/// be geometry that does not.
 void grow(gpu::Buffer& buffer, const char* label, size_t bytes, gpu::BufferUse use) {
   if (bytes <= buffer.size()) return;
-  gpu::Buffer larger(buffer.device(), label, std::max(bytes, buffer.size() + buffer.size() / 2), use);
+  gpu::Buffer larger(buffer.device(), label, bytes, use);
   buffer.device().gl().CopyNamedBufferSubData(buffer.id(), larger.id(), 0, 0,
                                               static_cast<GLsizeiptr>(buffer.size()));
   buffer = std::move(larger);

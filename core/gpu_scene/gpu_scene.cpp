@@ -49,15 +49,16 @@ GpuScene::Implementation::Implementation(gpu::Device& onDevice, const Scene& ofS
 
 /// Places deformed and dynamic primitives behind the scene's own. True if places changed.
 bool GpuScene::Implementation::allocate(const Pose& pose) {
-  std::vector<std::pair<int, int>> wanted;
-  for (const Deformation& d : pose.deformed) wanted.emplace_back(d.mesh, d.primitive);
-  bool fits = wanted == deformedPrimitives;
+  const auto partOf = [](const Deformation& d) { return std::pair(d.mesh, d.primitive); };
+  bool fits = std::ranges::equal(pose.deformed, deformedPrimitives, {}, partOf);
   for (const DynamicState& d : dynamic) {
     fits = fits && d.primitive->positions.size() <= d.vertexCapacity &&
            d.primitive->indices.size() <= d.indexCapacity;
   }
   if (fits) return false;
 
+  std::vector<std::pair<int, int>> wanted;
+  for (const Deformation& d : pose.deformed) wanted.push_back(partOf(d));
   uint64_t vertices = 0, indices = 0;
   for (const auto& [mesh, primitive] : wanted) vertices += geometry.primitive(mesh, primitive).vertexCount;
   for (const DynamicState& d : dynamic) {
@@ -149,13 +150,13 @@ void GpuScene::Implementation::updateInstances(const Pose& pose) {
 
 /// Orders the instances so that equal states and equal primitives are neighbours; only when those changed.
 void GpuScene::Implementation::sort() {
-  std::vector<uint64_t> keys(states.size());
+  nextSortKeys.resize(states.size());
   for (size_t i = 0; i < states.size(); ++i) {
-    keys[i] = uint64_t{states[i].primitive} << 32 | static_cast<uint64_t>(states[i].material) << 1 |
-              (states[i].mirrored ? 1 : 0);
+    nextSortKeys[i] = uint64_t{states[i].primitive} << 32 | static_cast<uint64_t>(states[i].material) << 1 |
+                      (states[i].mirrored ? 1 : 0);
   }
-  if (keys == sortKeys && !cameraOrder.empty()) return;
-  sortKeys = std::move(keys);
+  if (nextSortKeys == sortKeys && !cameraOrder.empty()) return;
+  sortKeys.swap(nextSortKeys);
   const auto order = [&](auto key) {
     std::vector<uint32_t> ids(states.size());
     std::iota(ids.begin(), ids.end(), 0u);

@@ -18,6 +18,7 @@ struct DrawCommand {
   uint32_t count, instanceCount, firstIndex;
   int32_t baseVertex;
   uint32_t baseInstance;
+  bool operator==(const DrawCommand&) const = default;
 };
 
 /// Holds commands that share textures and fixed-function state.
@@ -34,8 +35,11 @@ struct DrawList::Implementation {
   std::vector<uint32_t> viewRuns;  ///< first run of each separately drawn view, then the end
   uint64_t triangles = 0;
   gpu::Buffer entryBuffer, commandBuffer;
+  std::vector<glm::uvec2> uploadedEntries;  ///< what the buffers hold
+  std::vector<DrawCommand> uploadedCommands;
 
   void clear();
+  /// Brings the buffers to the entries and commands, which it takes.
   void upload(gpu::Device& device);
   /// Calls f(run, index of the view or 0 where all were drawn together, whether it is the view's first run).
   template <class F>
@@ -95,7 +99,7 @@ struct GpuScene::Implementation {
   std::vector<std::pair<int, int>> deformedPrimitives;
 
   std::vector<InstanceState> states;
-  std::vector<uint64_t> sortKeys;
+  std::vector<uint64_t> sortKeys, nextSortKeys;
   std::vector<uint32_t> cameraOrder, depthOrder;
   bool culling = true;
   std::vector<glsl::Instance> instances, nextInstances;

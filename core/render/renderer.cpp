@@ -59,6 +59,7 @@ bool Renderer::Implementation::render(frame::Timing timing, const frame::FrameGr
   if (settings.dynamic) graph->invalidate();
   const bool whole = graph->execute(timing, cancelled);
   if (!whole) services.givenUp();
+  begun = begun || whole;
   return whole;
 }
 
@@ -76,6 +77,7 @@ void Renderer::configure(Settings settings) {
   self.dropGraph();
   self.settings = std::move(settings);
   self.frameIndex = 0;
+  self.begun = false;
 }
 
 void Renderer::setCamera(const scene::CameraPose& camera) {
@@ -93,9 +95,8 @@ bool Renderer::render(frame::Timing timing, const frame::FrameGraph::Cancelled& 
 }
 
 int Renderer::framesOfPicture() const {
-  return implementation_->frameIndex == 0
-             ? historyOf(implementation_->settings.term, implementation_->settings.techniques)
-             : 1;
+  const Implementation& self = *implementation_;
+  return self.begun ? 1 : historyOf(self.settings.term, self.settings.techniques);
 }
 
 const gpu::Texture& Renderer::display() const {

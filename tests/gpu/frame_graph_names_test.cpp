@@ -12,6 +12,7 @@ namespace limn::frame {
 namespace {
 
 using ::testing::Each;
+using ::testing::ElementsAre;
 using ::testing::HasSubstr;
 
 class FrameGraphNames : public FrameGraphGpu {
@@ -97,6 +98,34 @@ TEST_F(FrameGraphNames, SlotsHoldAnotherThingForEachDispatch) {
   graph.execute();
   EXPECT_THAT(read(graph.texture(a)), Each(3.f));
   EXPECT_THAT(read(graph.texture(b)), Each(3.f));
+}
+
+/// A pass may load one part of a texture and store another: each of the two contents has an access of its
+/// own.
+TEST_F(FrameGraphNames, SlotsAreBoundForTheAccessToTheirContents) {
+  FrameGraph graph;
+  const TextureHandle start = set(graph, "start", 1), source = set(graph, "source", 2);
+  PassBuilder pass = graph.addPass("use");
+  pass.read(source, Access::sampled, "source", "").read(start, Access::imageLoad, "one part");
+  const TextureHandle written = pass.write(start, Access::imageStore, "the other");
+  const SlotHandle slot = pass.slot("target");
+  const ProgramHandle run = pass.program(program("add", "2"));
+  std::vector<GLint> bound;
+  pass.execute([=, &bound](PassContext& context) {
+    context.use(run);
+    for (const TextureHandle& each : {start, written}) {
+      context.bind(slot, each);
+      GLint access = 0;
+      context.gl().GetIntegeri_v(GL_IMAGE_BINDING_ACCESS, 0, &access);
+      bound.push_back(access);
+    }
+    context.dispatch(kSize, kSize, 1, 8, 8);
+  });
+  graph.output(written);
+  prepare(graph);
+  graph.execute();
+  EXPECT_THAT(bound, ElementsAre(GL_READ_ONLY, GL_WRITE_ONLY));
+  EXPECT_THAT(read(graph.texture(written)), Each(4.f));
 }
 
 TEST_F(FrameGraphNames, SlotsTakeOnlyWhatThePassDeclared) {

@@ -225,13 +225,15 @@ class UpdatedBuffers : public FrameGraphGpu {
 };
 
 /// Views of shadow maps are such a buffer: maps are drawn with it as a storage block, and read with it as a
-/// uniform block. What a frame that is given up wrote there is written over before anybody reads it.
+/// uniform block. Lights are another, a storage block of several passes. What a frame that is given up wrote
+/// there is written over before anybody reads it.
 TEST_F(UpdatedBuffers, areReadAsTheyWereUpdatedLast) {
   shaders().mount("techniques/updated/", kUpdatedSources);
   constexpr Read uniform{Access::uniformBuffer, false}, storage{Access::storageLoad, false},
       drawn{Access::storageLoad, true};
-  const std::vector<std::vector<Read>> all{
-      {uniform}, {storage}, {drawn}, {storage, uniform}, {drawn, uniform}};
+  const std::vector<std::vector<Read>> all{{uniform},          {storage},        {drawn},
+                                           {storage, uniform}, {drawn, uniform}, {drawn, storage},
+                                           {storage, storage}};
   for (const std::vector<Read>& reads : all) {
     auto held = gpu::Buffer::of<Value>(device(), "held", full(0), gpu::BufferUse::updated);
     FrameGraph graph;

@@ -185,6 +185,18 @@ TEST_F(FrameHistoryTest, PicturesWithoutItsLightTakeOneFrame) {
   EXPECT_EQ(renderer.framesOfPicture(), 1);
 }
 
+/// What is given up leaves no light for the frames after it.
+TEST_F(FrameHistoryTest, APictureBehindAFrameThatWasGivenUpHasAllItsFrames) {
+  const scene::Scene scene = asset("cornell_box");
+  render::Renderer renderer(device(), scene);
+  renderer.configure(gathered(64, kFrames));
+  renderer.setCamera(renderer.pose().cameras.at(0));
+  EXPECT_FALSE(renderer.render(frame::Timing::off, [] { return true; }));
+  EXPECT_EQ(renderer.framesOfPicture(), kFrames);
+  EXPECT_TRUE(renderer.render());
+  EXPECT_EQ(renderer.framesOfPicture(), 1);
+}
+
 /// Where balls hid the wall it was not seen before, though the camera stands still: the frame has its own
 /// light alone there. Its virtual lights are those of the first frame, as kFrames sets take turns.
 TEST_F(FrameHistoryTest, GeometryThatChangesLeavesNoTraceOnWhatItHid) {

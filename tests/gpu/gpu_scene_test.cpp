@@ -264,6 +264,24 @@ TEST_F(GpuSceneTest, SkinnedAndMorphedVerticesEqualTransformedOnes) {
   }
 }
 
+/// The room for a quad that is deformed is that of a quad, however much stands still beside it.
+TEST_F(GpuSceneTest, DeformedVerticesTakeRoomForThemselves) {
+  scene::Scene scene;
+  scene::Primitive morphed = floorPrimitive(1, addMaterial(scene));
+  morphed.morphTargets.emplace_back().positions.assign(4, {0, 1, 0});
+  morphed.morphTargets[0].deltaBounds = {{0, 0, 0}, {0, 1, 0}};
+  const int floor = addMesh(scene, morphed), sphere = addMesh(scene, spherePrimitive(1, 0));
+  scene::Pose pose;
+  addInstance(scene, pose, sphere);
+  addInstance(scene, pose, floor);
+  pose.instances[1].deformed = 0;
+  pose.deformed.push_back({floor, 0, {}, {0.5f}});
+  scene::GpuScene gpuScene(device(), scene);
+  const int64_t before = device().counters().bufferBytes;
+  gpuScene.update(pose, scene::lookAt({0, 2, 4}, {0, 0, 0}, 0.6f), {kSide, kSide}, 0);
+  EXPECT_LT(device().counters().bufferBytes - before, 4096);
+}
+
 /// Joints that mirror turn the winding and the bitangents round as the transform of a rigid mesh does.
 TEST_F(GpuSceneTest, MirroredSkinsEqualMirroredInstances) {
   scene::Scene rigid;

@@ -1,20 +1,82 @@
 // What a renderer does between frames, with shaders that change on disk and with pictures that are too large;
 // and of a lamp that is seen.
+#include <gmock/gmock.h>
 #include <unistd.h>
 
 #include <cmath>
 #include <filesystem>
 #include <string>
+#include <utility>
+#include <vector>
 
 #include "core/base/error.h"
 #include "core/base/file.h"
+#include "core/scene/camera.h"
 #include "tests/gpu/render_test.h"
 #include "tests/support/scene_nodes.h"
 
 namespace limn {
 namespace {
 
+using ::testing::Contains;
+using ::testing::ElementsAre;
+
 class RendererTest : public RenderTest {};
+
+/// Records which buffers are updated by taking the place of one function of the context's table.
+class UpdateRecorder {
+ public:
+  explicit UpdateRecorder(const gl::Functions& gl) : table_(const_cast<gl::Functions&>(gl)) {
+    updated.clear();
+    original = std::exchange(table_.NamedBufferSubData, &record);
+  }
+  ~UpdateRecorder() { table_.NamedBufferSubData = original; }
+  UpdateRecorder(const UpdateRecorder&) = delete;
+  UpdateRecorder& operator=(const UpdateRecorder&) = delete;
+
+  /// Returns what the buffers are called that were updated since the last call.
+  std::vector<std::string> take() const {
+    std::vector<std::string> names;
+    for (const GLuint id : std::exchange(updated, {})) {
+      char label[64] = {};
+      table_.GetObjectLabel(GL_BUFFER, id, sizeof label, nullptr, label);
+      names.emplace_back(label);
+    }
+    return names;
+  }
+
+ private:
+  static void record(GLuint id, GLintptr offset, GLsizeiptr bytes, const void* data) {
+    updated.push_back(id);
+    original(id, offset, bytes, data);
+  }
+  static inline std::vector<GLuint> updated;
+  static inline decltype(gl::Functions::NamedBufferSubData) original = nullptr;
+  gl::Functions& table_;
+};
+
+/// Everything is drawn again in each frame, but what is drawn is known. A camera before the right wall does
+/// not see what lies behind it.
+TEST_F(RendererTest, whatIsDrawnIsUploadedWhereItChanged) {
+  const scene::Scene scene = asset("cornell_box");
+  render::Renderer renderer(device(), scene), other(device(), scene);
+  const render::Settings shown = settings(40, 30, Term::direct, {technique("hard_shadow_map")});
+  const scene::CameraPose front = renderer.pose().cameras.at(0),
+                          wall = scene::lookAt({0.8f, 1, 0}, {1, 1, 0}, 0.5f);
+  const auto next = [&](const scene::CameraPose& camera) {
+    renderer.setCamera(camera);
+    renderer.render();
+    return renderer.read();
+  };
+  const Image first = picture(renderer, shown, front), aside = picture(other, shown, wall);
+  const UpdateRecorder recorder(gl());
+  EXPECT_EQ(rmse(next(front), first), 0);
+  EXPECT_THAT(recorder.take(), ElementsAre("frame"));
+  EXPECT_EQ(rmse(next(wall), aside), 0);
+  EXPECT_THAT(recorder.take(), Contains("draw entries"));
+  EXPECT_EQ(rmse(next(front), first), 0);
+  EXPECT_THAT(recorder.take(), Contains("draw entries"));
+}
 
 TEST_F(RendererTest, forgetsWhatOldShadersLeftInCachedPasses) {
   const std::filesystem::path folder = testing::TempDir() + "reloaded" + std::to_string(getpid());

@@ -37,6 +37,7 @@ struct Renderer::Implementation {
   int animation = scene::kNone;
   bool poseDirty = true;
   uint32_t frameIndex = 0;
+  bool begun = false;          ///< the sequence has a whole frame
   std::vector<bool> emitting;  ///< of each light, when the graph was built
   std::vector<std::string> mounted;
   std::vector<Use> uses;

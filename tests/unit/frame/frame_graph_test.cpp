@@ -4,6 +4,8 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
+#include <optional>
+
 #include "core/base/error.h"
 
 namespace limn::frame {
@@ -219,6 +221,17 @@ TEST(FrameGraphProblems, AreAllReportedAtOnceInOneLine) {
   EXPECT_THAT(text, HasSubstr("output 'buffer' is written by no pass"));
   EXPECT_EQ(text.find('\n'), std::string::npos);
   EXPECT_THROW(graph.explain(), Error);
+}
+
+/// A graph that is built again often lies where the one before it lay.
+TEST(FrameGraphProblems, HandlesOfAGraphThatIsGoneAreRefused) {
+  std::optional<FrameGraph> graph(std::in_place);
+  const TextureHandle old = graph->createTexture("old", kResult);
+  for (int i = 0; i < 8; ++i) {
+    graph.emplace();
+    graph->createTexture("new", kResult);
+    EXPECT_THROW(graph->desc(old), Error) << i;
+  }
 }
 
 TEST(FrameGraphProblems, PassesThatNeedEachOtherHaveNoOrder) {
