@@ -15,6 +15,7 @@
 #include "core/base/file.h"
 #include "core/base/file_lock.h"
 #include "core/base/text.h"
+#include "core/bench/machine.h"
 #include "core/reference/reference.h"
 #include "core/reference/vertices.h"
 #include "core/session/view.h"
@@ -112,7 +113,7 @@ int runReference(const ReferenceArguments& options) {
       result = reference::render(request);
     } else {
       removeAbandonedFiles(options.cache);
-      result = reference::Cache(options.cache, warn).render(request);
+      result = reference::Cache(options.cache, warn, bench::machineName()).render(request);
     }
   } catch (const Error& stopped) {
     if (!interruption.asked()) throw;

@@ -51,6 +51,7 @@ std::optional<Result> Cache::get(const std::string& contentHash) const {
     const auto machine = metadata.find("machine");
     const bool elsewhere = machine != metadata.end() && !machine_.empty() && machine->second != machine_;
     if (!elsewhere) result.seconds = numberOf<double>(result.image, "seconds");
+    for (const char* ofFile : {"seconds", "machine"}) result.image.metadata().erase(ofFile);
     return result;
   } catch (const Error&) {
     return std::nullopt;  // a broken file is rendered again

@@ -8,6 +8,7 @@
 #include <type_traits>
 #include <vector>
 
+#include "core/reference/private/ray_scene.h"
 #include "core/relief/height_field.h"
 
 namespace limn::reference {
@@ -108,10 +109,13 @@ void addScene(Hasher& h, const scene::Scene& scene) {
 
 void addPose(Hasher& h, const scene::Pose& pose, int lights) {
   h.add(pose.instances.size());
-  constexpr uint32_t mirroredSkin = 0x5c14;  // where there is one, for other results are known without it
+  constexpr uint32_t mirroredSkin = 0x5c14;    // where there is one, for other results are known without it
+  constexpr uint32_t withoutInverse = 0xf1a7;  // earlier results show such copies elsewhere
   for (const auto& i : pose.instances) {
     h.addAll(i.node == scene::kNone, i.mesh, i.primitive, i.objectToWorld, i.deformed);
     if (i.mirroredSkin) h.add(mirroredSkin);
+    if (i.node != scene::kNone && i.deformed == scene::kNone && !takesRays(i.objectToWorld))
+      h.add(withoutInverse);
   }
   h.add(pose.deformed.size());
   for (const auto& d : pose.deformed) h.addAll(d.mesh, d.primitive, d.joints, d.morphWeights);
@@ -128,23 +132,8 @@ void addDensity(Hasher& h, const scene::Medium& medium, double time) {
   h.addAll(s.low, s.high, s.whirl, s.rise, s.seed, s.resolution, time);
 }
 
-void addWork(Hasher& h, const Request& r) {
-  h.add(kCodeVersion);
-  addScene(h, r.scene);
-  addDensity(h, r.scene.medium, r.pose.time);
-  // Lights that stand for the environment do not change pictures of all light.
-  addPose(h, r.pose, r.light == kAllLights ? ownLights(r.pose) : static_cast<int>(r.pose.lights.size()));
-  h.addAll(r.camera.worldToView, r.camera.yfov, r.camera.near);
-  h.addAll(r.width, r.height, termInfo(r.term).hashed, r.light, r.seed, r.aa);
-  if (r.bounces > 0) h.add(r.bounces);
-  constexpr uint32_t interfacesFollow = 0x5eec;  // tells them from bounces
-  if (r.interfaces != 0) h.addAll(interfacesFollow, r.interfaces);
-  constexpr uint32_t unshadowedFollows = 0x0b5c;
-  if (r.unshadowed) h.add(unshadowedFollows);
-  constexpr uint32_t reliefPathsFollow = 0xb0b5;
-  if (r.reliefPaths != ReliefPaths::both) h.addAll(reliefPathsFollow, r.reliefPaths);
-  constexpr uint32_t subsurfaceModelFollows = 0x5b5f;
-  if (r.subsurface != SubsurfaceModel::bssrdf) h.addAll(subsurfaceModelFollows, r.subsurface);
+/// Adds what tells pictures from earlier results that were wrong, where the request has what they had wrong.
+void addMends(Hasher& h, const Request& r) {
   constexpr uint32_t causticVersion = 4;
   const bool caustics = r.term == Term::final || r.term == Term::caustic || r.term == Term::media;
   const bool chains = r.term == Term::specular && r.interfaces == kAllInterfaces;
@@ -165,6 +154,37 @@ void addWork(Hasher& h, const Request& r) {
     return glsl::light_kind(light) == glsl::light_kind_disc && light.angular_diameter > 0;
   });
   if (air && r.scene.medium.sigmaS != glm::vec3(0) && discs) h.add(discsInFogVersion);
+  constexpr uint32_t indicesOfMetals = 0x3e03;  // earlier results have indices of at most 3
+  if (std::ranges::any_of(r.scene.materials, [](const scene::Material& m) { return m.ior > 3; }))
+    h.add(indicesOfMetals);
+  constexpr uint32_t footprintsOfPixels = 0xaa2d;  // earlier results have textures as fine as samples lie
+  if (r.aa > 1 && std::ranges::any_of(r.scene.materials, &scene::Material::textured))
+    h.add(footprintsOfPixels);
+  constexpr uint32_t narrowSpots = 0x5b07;  // earlier results lack some of their light
+  const bool narrow = std::ranges::any_of(r.pose.lights, [](const glsl::Light& light) {
+    return (light.flags & glsl::light_flag_cone) != 0 && light.cos_inner - light.cos_outer < 1e-4f;
+  });
+  if (narrow) h.add(narrowSpots);
+}
+
+void addWork(Hasher& h, const Request& r) {
+  h.add(kCodeVersion);
+  addScene(h, r.scene);
+  addDensity(h, r.scene.medium, r.pose.time);
+  // Lights that stand for the environment do not change pictures of all light.
+  addPose(h, r.pose, r.light == kAllLights ? ownLights(r.pose) : static_cast<int>(r.pose.lights.size()));
+  h.addAll(r.camera.worldToView, r.camera.yfov, r.camera.near);
+  h.addAll(r.width, r.height, termInfo(r.term).hashed, r.light, r.seed, r.aa);
+  if (r.bounces > 0) h.add(r.bounces);
+  constexpr uint32_t interfacesFollow = 0x5eec;  // tells them from bounces
+  if (r.interfaces != 0) h.addAll(interfacesFollow, r.interfaces);
+  constexpr uint32_t unshadowedFollows = 0x0b5c;
+  if (r.unshadowed) h.add(unshadowedFollows);
+  constexpr uint32_t reliefPathsFollow = 0xb0b5;
+  if (r.reliefPaths != ReliefPaths::both) h.addAll(reliefPathsFollow, r.reliefPaths);
+  constexpr uint32_t subsurfaceModelFollows = 0x5b5f;
+  if (r.subsurface != SubsurfaceModel::bssrdf) h.addAll(subsurfaceModelFollows, r.subsurface);
+  addMends(h, r);
 }
 
 }  // namespace

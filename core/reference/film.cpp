@@ -38,9 +38,8 @@ bool isMaskedPixel(const Accumulators& state, size_t pixel) {
 
 /// A pixel of the image, rows from the top.
 std::span<float> imagePixel(const View& view, Image& image, size_t pixel) {
-  const int x = static_cast<int>(pixel % static_cast<size_t>(view.width));
-  const int y = static_cast<int>(pixel / static_cast<size_t>(view.width));
-  return image.pixel(x, view.height - 1 - y);
+  const ViewPixel at = view.pixel(pixel);
+  return image.pixel(at.x, view.height - 1 - at.y);
 }
 
 void writeColour(std::span<float> out, const glm::dvec3& colour, double variance) {
@@ -51,19 +50,15 @@ void writeColour(std::span<float> out, const glm::dvec3& colour, double variance
 }  // namespace
 
 bool View::surface(size_t index, Surface& surface) const {
-  const int x = static_cast<int>(index % static_cast<size_t>(width));
-  const int y = static_cast<int>(index / static_cast<size_t>(width));
   Hit hit;
-  if (!rays.see(frame, near, x, y, hit)) return false;
-  surface = surfaceAt(rays, hit, frame, x, y);
+  if (!rays.see(frame, near, pixel(index), hit)) return false;
+  surface = surfaceAt(rays, hit, frame, pixel(index));
   return true;
 }
 
 float View::distance(size_t index, float depth) const {
   if (!(depth > 0)) return std::numeric_limits<float>::max();
-  const int x = static_cast<int>(index % static_cast<size_t>(width));
-  const int y = static_cast<int>(index / static_cast<size_t>(width));
-  return depth * glm::length(viewRay(frame, static_cast<float>(x), static_cast<float>(y)));
+  return depth * glm::length(rayOf(index));
 }
 
 glm::vec3 View::transmittance(size_t index, float depth) const {
@@ -72,9 +67,12 @@ glm::vec3 View::transmittance(size_t index, float depth) const {
 }
 
 glm::vec3 View::direction(size_t index) const {
-  const int x = static_cast<int>(index % static_cast<size_t>(width));
-  const int y = static_cast<int>(index / static_cast<size_t>(width));
-  return glm::normalize(viewRay(frame, static_cast<float>(x), static_cast<float>(y)));
+  return glm::normalize(rayOf(index));
+}
+
+glm::vec3 View::rayOf(size_t index) const {
+  const ViewPixel at = pixel(index);
+  return viewRay(frame, static_cast<float>(at.x), static_cast<float>(at.y));
 }
 
 std::vector<std::string> channelNames(Term term) {

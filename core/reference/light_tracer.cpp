@@ -306,9 +306,7 @@ void LightTracer::reflect(const Hit& hit, const glm::vec3& direction, const glm:
   float depth = 0;
   double perSolidAngle = 0;
   if (!(cosine > 0) || !project(met->position, pixel, depth, perSolidAngle) || !(depths_[pixel] > 0)) return;
-  const int x = static_cast<int>(pixel % static_cast<size_t>(view_.width)),
-            y = static_cast<int>(pixel / static_cast<size_t>(view_.width));
-  if (view_.rays.hidden(view_.frame, view_.near, x, y, met->rayOrigin(towards))) return;
+  if (view_.rays.hidden(view_.frame, view_.near, view_.pixel(pixel), met->rayOrigin(towards))) return;
   const glm::vec3 reflected = flux * met->f(towards / distance, -direction) * (cosine * lit / crossed);
   film.add(pixel, glm::dvec3(reflected * view_.rays.medium().transmittanceBetween(met->position, eye)) *
                       (perSolidAngle / (static_cast<double>(distance) * distance)));

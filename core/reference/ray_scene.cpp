@@ -23,7 +23,7 @@ struct Context {
   RTCIntersectContext embree;
   const RayScene* scene;
   const glsl::FrameBlock* frame = nullptr;  ///< null: not a view ray
-  int x = 0, y = 0;
+  ViewPixel pixel;
   float away = 1;  ///< 1: a view ray leads away from the camera, -1: to it
 
   explicit Context(const RayScene* of) : scene(of) { rtcInitIntersectContext(&embree); }
@@ -99,7 +99,7 @@ void surfaceFilter(const RTCFilterFunctionNArguments* args) {
   float lod = 0.f;
   if (context.frame && user.material->baseColourTexture.image != scene::kNone && !user.primitive->uvs.empty())
     lod = levelOfDetail(scene, user.material->baseColourTexture,
-                        textureFootprint(draw, hit.primID, *context.frame, context.x, context.y));
+                        textureFootprint(draw, hit.primID, *context.frame, context.pixel));
   if (coverageAt(scene, *user.primitive, *user.material, hit.primID, hit.u, hit.v, lod) <
       user.material->alphaCutoff)
     args->valid[0] = 0;
@@ -126,6 +126,15 @@ float largestCoordinate(const glm::vec3* positions, size_t count, const glm::mat
   return largest;
 }
 
+/// Embree ends the program where a ray has a larger coordinate, or one that is no number.
+constexpr float kLargestOfRays = 1e18f;
+
+bool traceable(const RTCRay& ray) {
+  const auto fits = [](float value) { return std::abs(value) <= kLargestOfRays; };
+  return fits(ray.org_x) && fits(ray.org_y) && fits(ray.org_z) && fits(ray.dir_x) && fits(ray.dir_y) &&
+         fits(ray.dir_z);
+}
+
 void fail(RTCDevice device, const char* what) {
   const RTCError code = rtcGetDeviceError(device);
   if (code != RTC_ERROR_NONE)
@@ -146,8 +155,8 @@ glm::vec2 barycentricOnPlane(const glm::vec3& p0, const glm::vec3& p1, const glm
   return glm::vec2(glm::dot(from, p) / determinant, glm::dot(d, q) / determinant);
 }
 
-TextureFootprint textureFootprint(const Draw& draw, uint32_t triangle, const glsl::FrameBlock& frame, int x,
-                                  int y) {
+TextureFootprint textureFootprint(const Draw& draw, uint32_t triangle, const glsl::FrameBlock& frame,
+                                  const ViewPixel& pixel) {
   const uint32_t* i = &draw.primitive->indices[3 * static_cast<size_t>(triangle)];
   glm::vec3 p[3];
   for (int k = 0; k < 3; ++k) p[k] = glm::vec3(draw.toWorld * glm::vec4(draw.positions[i[k]], 1.f));
@@ -157,7 +166,9 @@ TextureFootprint textureFootprint(const Draw& draw, uint32_t triangle, const gls
                                            viewRay(frame, static_cast<float>(px), static_cast<float>(py)));
     return uvAt(*draw.primitive, triangle, b.x, b.y);
   };
-  return {uvOf(x | 1, y) - uvOf(x & ~1, y), uvOf(x, y | 1) - uvOf(x, y & ~1)};
+  const auto& [x, y, aa] = pixel;
+  const int left = (x / aa & ~1) * aa + x % aa, below = (y / aa & ~1) * aa + y % aa;
+  return {uvOf(left + aa, y) - uvOf(left, y), uvOf(x, below + aa) - uvOf(x, below)};
 }
 
 float levelOfDetail(const scene::Scene& scene, const scene::TextureRef& texture,
@@ -298,7 +309,7 @@ RayScene::RayScene(const scene::Scene& scene, const scene::Pose& pose, bool unsh
     draw.orientation = scene::mirrored(instance) ? -1.f : 1.f;
 
     const std::pair<int, int> key{instance.mesh, instance.primitive};
-    if (!dynamic && instance.deformed == scene::kNone && uses[key] > 1) {
+    if (!dynamic && instance.deformed == scene::kNone && uses[key] > 1 && takesRays(matrix)) {
       draw.toWorld = matrix;
       draw.positions =
           h.attachShared(id, key, primitive, matrix, {&primitive, draw.material, scene::kNone, 1.f});
@@ -335,6 +346,7 @@ namespace {
 
 /// The nearest surface that the query's filter lets pass.
 bool intersect(RTCScene top, Context& context, const RTCRay& ray, Hit& hit) {
+  if (!traceable(ray)) return false;
   RTCRayHit query{};
   query.ray = ray;
   query.hit.geomID = RTC_INVALID_GEOMETRY_ID;
@@ -351,24 +363,22 @@ bool intersect(RTCScene top, Context& context, const RTCRay& ray, Hit& hit) {
 
 }  // namespace
 
-bool RayScene::see(const glsl::FrameBlock& frame, float near, int x, int y, Hit& hit) const {
+bool RayScene::see(const glsl::FrameBlock& frame, float near, const ViewPixel& pixel, Hit& hit) const {
   Context context(this);
   context.frame = &frame;
-  context.x = x;
-  context.y = y;
-  const glm::vec3 direction = viewRay(frame, static_cast<float>(x), static_cast<float>(y));
+  context.pixel = pixel;
+  const glm::vec3 direction = viewRay(frame, static_cast<float>(pixel.x), static_cast<float>(pixel.y));
   return intersect(
       hierarchy_->top, context,
       rayFrom(glm::vec3(frame.camera_position), direction, near, std::numeric_limits<float>::infinity()),
       hit);
 }
 
-bool RayScene::hidden(const glsl::FrameBlock& frame, float near, int x, int y,
+bool RayScene::hidden(const glsl::FrameBlock& frame, float near, const ViewPixel& pixel,
                       const glm::vec3& origin) const {
   Context context(this);
   context.frame = &frame;
-  context.x = x;
-  context.y = y;
+  context.pixel = pixel;
   context.away = -1;
   const glm::vec3 towards = glm::vec3(frame.camera_position) - origin;
   const float depth = -(frame.world_to_view * glm::vec4(origin, 1)).z;
@@ -404,6 +414,7 @@ scene::Bounds RayScene::bodyBounds(uint32_t draw) const {
 bool RayScene::occluded(const glm::vec3& origin, const glm::vec3& direction, float end) const {
   Context context(this);
   RTCRay ray = rayFrom(origin, direction, 0.f, end);
+  if (!traceable(ray)) return false;
   rtcOccluded1(hierarchy_->top, &context.embree, &ray);
   return ray.tfar < 0.f;
 }

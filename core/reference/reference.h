@@ -122,8 +122,9 @@ struct Request {
   /// yet: a black picture is finished after 4096 samples, or at once where nothing is traced.
   double noise = 0;
   uint64_t seed = 0;
-  int aa = 1;  ///< aa x aa samples per pixel, on a regular grid and equally weighted, as A; other channels:
-               ///< the centre's
+  /// Takes aa x aa samples per pixel, on a regular grid and equally weighted, as A; other channels are the
+  /// centre's. Textures are at the level that the pixel asks for, as in the frames that pictures average.
+  int aa = 1;
   int threads = 0;  ///< 0: all cores
   ProgressCallback progress{};
   /// File with the state of unfinished work, resumed if it fits the request; empty: none.
@@ -144,7 +145,8 @@ struct Result {
   double noiseRms =
       0;  ///< RMS over pixels of the standard deviation of the mean, relative to the mean; Monte Carlo only
   int spp = 0;
-  /// Holds what all samples took. Files of a cache do not say where they are older, or another machine's.
+  /// Holds what all samples took on all cores; not known with Request::threads, nor where a checkpoint held
+  /// them all. Files of a cache do not say where they are older, or another machine's.
   std::optional<double> seconds{};
 };
 
@@ -168,8 +170,8 @@ class LIMN_API Cache {
                  std::string machine = {})
       : folder_(std::move(folder)), warn_(std::move(warn)), machine_(std::move(machine)) {}
   std::filesystem::path pathOf(const std::string& contentHash) const;
-  /// Returns the picture of that hash; nullopt if there is none, or if the file is broken or belongs to
-  /// another hash.
+  /// Returns the picture of that hash as render() does, without seconds and machine in its metadata; nullopt
+  /// if there is none, or if the file is broken or belongs to another hash.
   std::optional<Result> get(const std::string& contentHash) const;
   void put(const std::string& contentHash, const Result& result) const;
   /// Returns get(), or else calls render() and put(). Interrupted work is kept in the folder and resumed.

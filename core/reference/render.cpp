@@ -101,7 +101,8 @@ class Work {
         view_{.rays = rays_,
               .near = request.camera.near,
               .width = request.width * request.aa,
-              .height = request.height * request.aa},
+              .height = request.height * request.aa,
+              .aa = request.aa},
         integrator_(makeIntegrator(rays_, request)),
         needed_(static_cast<uint32_t>(request.spp + 1) / 2) {
     scene::setCamera(view_.frame, request.camera, request.pose.bounds, view_.width, view_.height);
@@ -135,8 +136,9 @@ class Work {
             request_.checkpoint.empty() ? "" : "; kept in " + request_.checkpoint.string()));
     }
     const double seconds = perSample() * state_.samples;
+    const bool known = request_.threads <= 0 && state_.samples > before;
     Result result = finish();
-    result.seconds = seconds;
+    if (known) result.seconds = seconds;
     return result;
   }
 

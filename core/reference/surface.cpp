@@ -77,7 +77,8 @@ void fillMaterial(const RayScene& rays, const TextureLookup& lookup, const glm::
   const glm::vec4 base = material.baseColour * lookup(material.baseColourTexture) * surface.vertexColour;
   const glm::vec4 metalRough = lookup(material.metalRoughTexture);
   // The G-buffer's ranges.
-  values.base_colour = glm::clamp(glm::vec3(base), 0.f, 1.f);
+  // Vertices and textures decide on a model's coverage alone.
+  values.base_colour = glm::clamp(glm::vec3(material.model ? material.baseColour : base), 0.f, 1.f);
   values.metallic = glm::clamp(material.metallic * metalRough.b, 0.f, 1.f);
   values.roughness = glm::clamp(material.roughness * metalRough.g, 0.f, 1.f);
   values.specular_factor = glm::clamp(material.specularFactor, 0.f, 1.f);
@@ -235,11 +236,12 @@ float Surface::pdf(const glm::vec3& direction) const {
   return glsl::model_pdf(*model, glsl::to_local(frame, view), glsl::to_local(frame, direction));
 }
 
-Surface surfaceAt(const RayScene& rays, const Hit& hit, const glsl::FrameBlock& frame, int x, int y) {
+Surface surfaceAt(const RayScene& rays, const Hit& hit, const glsl::FrameBlock& frame,
+                  const ViewPixel& pixel) {
   const Draw& draw = rays.draws()[hit.draw];
-  const glm::vec3 direction = viewRay(frame, static_cast<float>(x), static_cast<float>(y));
+  const glm::vec3 direction = viewRay(frame, static_cast<float>(pixel.x), static_cast<float>(pixel.y));
   std::optional<TextureFootprint> footprint;
-  if (!draw.primitive->uvs.empty()) footprint = textureFootprint(draw, hit.triangle, frame, x, y);
+  if (!draw.primitive->uvs.empty()) footprint = textureFootprint(draw, hit.triangle, frame, pixel);
   bool back = false;
   Surface surface = seenFrom(rays, hit, -glm::normalize(direction), footprint, back);
   surface.depth = hit.depth;

@@ -51,10 +51,29 @@ TEST(Provenance, TheCommandInsideAPictureGivesItAgain) {
   expectReproduced(folder.path(), "limn render " + scene + "-o $'l\\ni\\303\\244.png'", "l\ni\xc3\xa4.png");
   for (const std::string name : {"r.png", "r.exr"})
     expectReproduced(folder.path(), "limn reference " + scene + "--spp 4 --seed 7 -o " + name, name);
+  expectReproduced(folder.path(), "limn reference " + scene + "--spp 4 --cache kept -o k.exr", "k.exr");
   expectReproduced(folder.path(), "limn compare a.exr r.exr --diff d.png", "d.png");
   expectReproduced(folder.path(), "limn environment sky --width 64 --overlay o.png", "o.png");
   expectReproduced(folder.path(), "limn brdf info metal:0.3 --picture b.png", "b.png");
   expectReproduced(folder.path(), "limn render " + scene + "--frames 1:2 -o f.png", "f.0002.png");
+}
+
+/// Suites that find it there know whether its time may stand beside theirs.
+TEST(Provenance, AReferenceInACacheNamesTheMachineThatTookTheTime) {
+  const TemporaryFolder folder;
+  const auto kept = [&](const std::string& cache, const std::string& more) {
+    const std::string line =
+        "limn reference cornell_box --size 16x12 --spp 2 -o a.exr --cache " + cache + more;
+    EXPECT_EQ(shell(folder.path(), line).status, 0);
+    for (const auto& entry : fs::directory_iterator(folder / cache))
+      if (entry.path().extension() == ".exr") return entry.path();
+    return fs::path();
+  };
+  const fs::path all = kept("all", ""), one = kept("one", " --threads 1");
+  EXPECT_THAT(text(all, "machine"), testing::HasSubstr(" threads, "));
+  EXPECT_NE(text(all, "seconds"), "");
+  EXPECT_EQ(text(one, "seconds"), "") << "it is not what all cores take";
+  EXPECT_EQ(text(one, "spp"), "2");
 }
 
 TEST(Provenance, APictureNamesTheVersionAndNoPathThatNobodyTyped) {

@@ -3,11 +3,15 @@
 
 #include <algorithm>
 #include <array>
+#include <cmath>
+#include <random>
 
 #include "core/reference/reference.h"
 #include "core/scene/camera.h"
+#include "core/scene/mip_chain.h"
 #include "tests/gpu/render_test.h"
 #include "tests/support/gltf_builder.h"
+#include "tests/support/scene_nodes.h"
 
 namespace limn {
 namespace {
@@ -95,6 +99,48 @@ TEST_F(SupersampleTest, TheReferenceHasTheSameSamples) {
           EXPECT_EQ(picture.at(x, y, picture.channel(channel)), truth.at(x, y, truth.channel(channel)))
               << channel << ' ' << aa << ' ' << x << ' ' << y;
       }
+  }
+}
+
+/// Black and clear or white and opaque texels by chance, two to the side of a pixel: each sample looks them
+/// up at level 1, since pictures are averaged of frames with a sample in each pixel. At level 0 values differ
+/// by 0.1, and masks by more.
+TEST_F(SupersampleTest, TexturesAreAtTheLevelOfAPixelInBoth) {
+  constexpr int texels = 2 * kSquare;
+  scene::TextureImage image;
+  scene::TextureImage::Level level{texels, texels, {}};
+  std::mt19937 random(1);
+  for (int i = 0; i < texels * texels; ++i)
+    level.rgba.insert(level.rgba.end(), 4, random() % 2 == 0 ? uint8_t{0} : uint8_t{255});
+  image.levels.push_back(level);
+  scene::buildMipChain(image);
+  for (const bool mask : {false, true}) {
+    SCOPED_TRACE(mask ? "a mask" : "a colour");
+    scene::Scene scene;
+    scene.images.push_back(image);
+    scene::Material material = test::lambertian(0);
+    material.emission = glm::vec3(1);
+    (mask ? material.baseColourTexture : material.emissiveTexture) = {0, scene::Wrap::clamp,
+                                                                      scene::Wrap::clamp};
+    if (mask) material.alphaCutoff = 0.6f;
+    test::show(scene, test::quad({0, 0, 0}, {2, 0, 0}, {0, 2, 0}, test::addMaterial(scene, material)));
+    const scene::Pose pose = scene::evaluate(scene, 0);
+    render::Renderer renderer(device(), scene);
+    renderer.configure(settings(kSquare, kSquare, Term::final));
+    for (const int aa : {1, 2, 3}) {
+      const Image picture = render::supersample(renderer, camera_, {kSquare, kSquare}, aa);
+      reference::Request asked = test::request(scene, pose, camera_, glm::ivec2(kSquare), Term::final, 1);
+      asked.aa = aa;
+      const Image truth = reference::render(asked).image;
+      double difference = 0, sum = 0;
+      for (int y = 0; y < kSquare; ++y)
+        for (int x = 0; x < kSquare; ++x) {
+          difference += std::abs(static_cast<double>(picture.at(x, y, 0) - truth.at(x, y, 0)));
+          sum += static_cast<double>(truth.at(x, y, 0));
+        }
+      EXPECT_GT(sum / (kSquare * kSquare), 0.1) << aa;
+      EXPECT_LT(difference / (kSquare * kSquare), 0.01) << aa;
+    }
   }
 }
 

@@ -18,11 +18,18 @@ struct View {
   glsl::FrameBlock frame{};
   float near = 0;
   int width = 0, height = 0;
+  int aa = 1;
 
   size_t pixelCount() const { return static_cast<size_t>(width) * static_cast<size_t>(height); }
+  ViewPixel pixel(size_t index) const {
+    return {static_cast<int>(index % static_cast<size_t>(width)),
+            static_cast<int>(index / static_cast<size_t>(width)), aa};
+  }
   /// Finds the surface that pixel `index` shows; returns false if there is none.
   bool surface(size_t index, Surface& surface) const;
-  /// Returns the unit direction of the pixel's view ray.
+  /// Returns the pixel's view ray; its component along the camera's axis is 1.
+  glm::vec3 rayOf(size_t index) const;
+  /// Returns its unit direction.
   glm::vec3 direction(size_t index) const;
   /// Returns the distance along that ray, metres, to `depth` along the camera's axis; the largest number for
   /// depth 0.

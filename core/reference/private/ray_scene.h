@@ -1,6 +1,7 @@
 // Declares a posed scene as rays see it: Embree's hierarchies, one draw per entry of Pose::instances.
 #pragma once
 
+#include <cmath>
 #include <cstdint>
 #include <glm/glm.hpp>
 #include <memory>
@@ -42,6 +43,21 @@ struct Hit {
   float depth = 0;     ///< along the camera's axis, metres; of nearest(): in lengths of its direction
 };
 
+/// Returns whether rays can be taken into the space of an instance. They cannot where the matrix is flat or
+/// nearly so, and where its factors are so far from 1 that floats hold no inverse or no ray there.
+inline bool takesRays(const glm::mat4& objectToWorld) {
+  constexpr double least = 1e-5;  // floats round by 6e-8, which the inverse of such a matrix makes 0.6 %
+  constexpr double most = 1e8;
+  const glm::dmat3 matrix{glm::dmat4(objectToWorld)};
+  const double sides = glm::length(matrix[0]) * glm::length(matrix[1]) * glm::length(matrix[2]);
+  if (!(std::abs(glm::determinant(matrix)) > least * sides)) return false;
+  const glm::dmat3 inverse = glm::inverse(matrix);
+  for (int column = 0; column < 3; ++column)
+    for (int row = 0; row < 3; ++row)
+      if (!(std::abs(matrix[column][row]) <= most && std::abs(inverse[column][row]) <= most)) return false;
+  return true;
+}
+
 /// Returns the barycentric coordinates (u, v) at which the line through `origin` along `direction` meets the
 /// plane of the triangle p0, p1, p2; not finite where they are parallel.
 glm::vec2 barycentricOnPlane(const glm::vec3& p0, const glm::vec3& p1, const glm::vec3& p2,
@@ -53,13 +69,20 @@ inline glm::vec3 viewRay(const glsl::FrameBlock& frame, float x, float y) {
          y * glm::vec3(frame.view_ray_dy);
 }
 
-/// Holds the change of the texture coordinates over one pixel, as the 2x2 quad of pixel (x, y) sees it:
-/// differences between the quad's pixel centres on the triangle's plane.
+/// Names a sample of a picture: pixel (x, y), from the lower left, of a view with aa x aa of them in each of
+/// the picture's pixels.
+struct ViewPixel {
+  int x = 0, y = 0, aa = 1;
+};
+
+/// Holds the change of the texture coordinates over one pixel of the picture, as frames of a sample each see
+/// it, which pictures are averaged of: differences on the triangle's plane between the samples at that place
+/// in the pixels of a 2x2 quad.
 struct TextureFootprint {
   glm::vec2 dx{0}, dy{0};
 };
-TextureFootprint textureFootprint(const Draw& draw, uint32_t triangle, const glsl::FrameBlock& frame, int x,
-                                  int y);
+TextureFootprint textureFootprint(const Draw& draw, uint32_t triangle, const glsl::FrameBlock& frame,
+                                  const ViewPixel& pixel);
 
 /// Returns the level of detail of `texture` for that footprint.
 float levelOfDetail(const scene::Scene& scene, const scene::TextureRef& texture,
@@ -84,13 +107,14 @@ class RayScene {
     return slopes_[static_cast<size_t>(height)];
   }
 
-  /// Finds the nearest surface that the camera sees at the centre of pixel (x, y), beyond `near`, and returns
+  /// Finds the nearest surface that the camera sees at the centre of the pixel, beyond `near`, and returns
   /// whether there is one: cut-out texels and back faces of single-sided surfaces are passed through.
-  bool see(const glsl::FrameBlock& frame, float near, int x, int y, Hit& hit) const;
+  bool see(const glsl::FrameBlock& frame, float near, const ViewPixel& pixel, Hit& hit) const;
 
   /// Returns whether what see() finds lies between the camera's near plane, at `near`, and `origin`, which
-  /// pixel (x, y) shows, lies behind that plane and is clear of surfaces.
-  bool hidden(const glsl::FrameBlock& frame, float near, int x, int y, const glm::vec3& origin) const;
+  /// the pixel shows, lies behind that plane and is clear of surfaces.
+  bool hidden(const glsl::FrameBlock& frame, float near, const ViewPixel& pixel,
+              const glm::vec3& origin) const;
 
   /// Finds the nearest surface on origin + t * direction, t > 0, seen from either side, and returns whether
   /// there is one; cut-out texels (of the full-size level) are passed through.

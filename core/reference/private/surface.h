@@ -75,9 +75,10 @@ struct Surface {
   }
 };
 
-/// Returns the surface at `hit`, seen in pixel (x, y): textures at the level that the pixel's quad asks for,
+/// Returns the surface at `hit`, seen in that pixel: textures at the level that its footprint asks for,
 /// normals turned towards the camera where a double-sided surface shows its back.
-Surface surfaceAt(const RayScene& rays, const Hit& hit, const glsl::FrameBlock& frame, int x, int y);
+Surface surfaceAt(const RayScene& rays, const Hit& hit, const glsl::FrameBlock& frame,
+                  const ViewPixel& pixel);
 
 /// Returns the surface at `hit`, met by a ray along `direction` (unit): textures at their full size. Returns
 /// nullopt where the ray met the back of a single-sided surface, which reflects nothing.

@@ -58,6 +58,25 @@ TEST(ReferenceWork, OfAPictureOfAnotherMachineTheCacheKnowsNoTime) {
   EXPECT_EQ(elsewhere.seconds, std::nullopt);
 }
 
+TEST(ReferenceWork, TheTimeIsThatOfAllCores) {
+  const World world = busyWorld();
+  Request request = world.request(16, Term::direct, 4);
+  EXPECT_GT(render(request).seconds, 0);
+  request.threads = 1;
+  EXPECT_EQ(render(request).seconds, std::nullopt);
+}
+
+/// The program writes it down as it is, whether it was found or rendered.
+TEST(ReferenceWork, APictureOfTheCacheSaysWhatAFreshOneDoes) {
+  const Folder folder;
+  const World world = busyWorld();
+  const Request request = world.request(16, Term::direct, 4);
+  Cache cache(folder.path(), {}, "a");
+  const Result fresh = cache.render(request), found = cache.render(request);
+  EXPECT_EQ(found.image.metadata(), fresh.image.metadata());
+  EXPECT_EQ(found.seconds, fresh.seconds);
+}
+
 TEST(ReferenceWork, ACacheThatCannotBeWrittenKeepsReferencesInMemoryAndSaysSoOnce) {
   const Folder folder;
   const auto blocked = folder.path() / "file";
@@ -158,6 +177,29 @@ TEST(ReferenceWork, HeightMapsAreHashedWhereThereAreAny) {
   hashes.push_back(hash());
   std::ranges::sort(hashes);
   EXPECT_EQ(std::ranges::adjacent_find(hashes), hashes.end());
+}
+
+/// The names are those of earlier results: of indices up to 3, narrow spots too dim, copies without inverse.
+TEST(ReferenceWork, EarlierResultsThatWereWrongAreNotFound) {
+  World world;
+  world.addQuad({0, 0, 0}, {4, 0, 0}, {0, 0, -4}, world.addMaterial(glm::vec3(0.5f)));
+  world.addLight(glsl::light_directional, {0, 0, 0}, {0, -1, 0}, glm::vec3(1));
+  const auto hash = [&](auto change) {
+    World changed = world;
+    change(changed);
+    return contentHash(changed.request(16, Term::direct, 16));
+  };
+  EXPECT_EQ(hash([](World&) {}), "a1c7000ef140084a562394713b246778") << "others are found";
+  EXPECT_NE(hash([](World& w) { w.scene.materials[0].ior = 1000; }), "7499c6c791bad011b929bdd9f275a04e");
+  EXPECT_NE(hash([](World& w) {
+              glsl::Light& light = w.pose.lights[0];
+              light.type = glsl::light_spot;
+              light.flags = glsl::light_flag_cone;
+              light.cos_outer = 0.99996f;
+            }),
+            "28146d1b03afaa22839a0402c816c417");
+  EXPECT_NE(hash([](World& w) { w.pose.instances[0].objectToWorld[1][1] = 0; }),
+            "dd2a3c4627fdda4e92d9eccefdfef19f");
 }
 
 }  // namespace

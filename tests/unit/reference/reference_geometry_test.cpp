@@ -78,6 +78,31 @@ TEST(ReferenceGeometry, InstancesEqualCopies) {
   EXPECT_GT(sum, 0);
 }
 
+/// A sphere whose height is nothing, and one whose height has an inverse beyond what rays may be: of a mesh
+/// that is drawn twice, and of a mesh of its own.
+TEST(ReferenceGeometry, CopiesWithoutAnInverseEqualMeshesOfTheirOwn) {
+  for (const float height : {0.f, 1e-25f}) {
+    World copied = floorWorld();
+    copied.addLight(glsl::light_point, {0, 2, 0}, {0, -1, 0}, glm::vec3(3));
+    const int mesh = copied.addMesh(World::sphere(16, copied.addMaterial(glm::vec3(0.6f))));
+    copied.addInstance(mesh, glm::translate(glm::mat4(1), glm::vec3(0, 0.5f, 0)) *
+                                 glm::scale(glm::mat4(1), glm::vec3(0.5f, height, 0.5f)));
+    const World alone = copied;
+    copied.addInstance(mesh, glm::translate(glm::mat4(1), glm::vec3(0, -50, 0)));
+    const Image image = render(copied.request(16, Term::direct, 2)).image;
+    EXPECT_EQ(image.at(8, 8, image.channel("id")), 1.f) << height;
+    const Image expected = render(alone.request(16, Term::direct, 2)).image;
+    EXPECT_LT(largestDifference(expected, image, "R"), 1e-4) << height;
+  }
+}
+
+TEST(ReferenceGeometry, RaysFromBeyondAllScenesMeetNothing) {
+  World world = floorWorld();
+  world.camera = scene::lookAt({0, 1e19f, 1}, {0, 0, 0}, 0.8f);
+  const Image image = render(world.request(4, Term::direct, 2)).image;
+  EXPECT_EQ(image.at(2, 2, image.channel("coverage")), 0.f);
+}
+
 /// Joints that mirror turn the winding and the bitangents round as the transform of a rigid mesh does.
 TEST(ReferenceGeometry, MirroredSkinsEqualMirroredInstances) {
   World rigid = floorWorld();

@@ -38,6 +38,20 @@ TEST(ReferenceMedia, ASlabAttenuatesExponentiallyOnBothWays) {
         << c;
 }
 
+TEST(ReferenceMedia, TheSkyIsSeenThroughAllOfTheMedium) {
+  World world = floorWorld();
+  world.scene.environment.width = 4;
+  world.scene.environment.height = 2;
+  world.scene.environment.texels.assign(8, vec3(2));
+  world.scene.medium.sigmaA = vec3(0.01f, 0.1f, 0.5f);
+  world.camera = scene::lookAt({0, 1, 6}, {0, 1, 0}, 0.1f);
+  const Image sky = render(world.request(1, Term::final, 2)).image;
+  for (int c = 0; c < 3; ++c) {  // along a chord of the ball of radius root of 8, 1 m from its middle
+    const double left = std::exp(-double(world.scene.medium.sigmaA[c]) * 2 * std::sqrt(7.0));
+    EXPECT_NEAR(double(sky.at(0, 0, c)), 2 * left, 2e-4) << c;
+  }
+}
+
 /// Density y + 1/2, where that is not negative.
 scene::DensityGrid ramp() {
   return limn::test::gridOf({2, 48, 2}, vec3(-3), vec3(3),
@@ -185,6 +199,38 @@ TEST(ReferenceMedia, AirlightOfAPointSourceMeetsQuadrature) {
         EXPECT_NEAR(double(image.at(x, y, 0)) / expected, 1, 0.02) << x << " " << y << " g " << g;
       }
   }
+}
+
+/// Of a lamp in the plane z = 0 that shines to -z, or to both sides, along lines at a distance from it.
+TEST(ReferenceMedia, AirlightOfARectangleMeetsQuadratureOnItsSides) {
+  World world = floorWorld();
+  world.scene.medium.sigmaA = vec3(0.1f);
+  world.scene.medium.sigmaS = vec3(0.2f);
+  world.scene.medium.g = 0.5f;
+  glsl::Light& light = world.addRectangle({0, 1, 0}, {0.8f, 0, 0}, {0, 0.6f, 0}, 3);
+  const auto seenAt = [&](float z) {
+    world.camera = scene::lookAt({-2, 1, z}, {0, 1, z}, 0.01f);
+    return double(render(world.request(1, Term::media, 4096)).image.at(0, 0, 0));
+  };
+  constexpr int steps = 400, cells = 10;
+  const double g = 0.5, z = -0.5, end = 2 + std::sqrt(8 - 1 - z * z);  // from the eye to the fog's border
+  double expected = 0;
+  for (int i = 0; i < steps; ++i)
+    for (int j = 0; j < cells * cells; ++j) {
+      const double t = (i + 0.5) * end / steps;
+      const glm::dvec3 source(0.8 * ((j % cells + 0.5) / cells - 0.5),
+                              1 + 0.6 * ((j / cells + 0.5) / cells - 0.5), 0);
+      const glm::dvec3 d = glm::dvec3(t - 2, 1, z) - source;
+      const double r = glm::length(d), cosine = -d.x / r;
+      const double phase = (1 - g * g) / (4 * M_PI * std::pow(1 + g * g - 2 * g * cosine, 1.5));
+      expected += 0.2 * 3 * std::abs(d.z) / r * phase * std::exp(-0.3 * (t + r)) / (r * r);
+    }
+  expected *= end / steps * 0.8 * 0.6 / (cells * cells);
+  EXPECT_NEAR(seenAt(-0.5f) / expected, 1, 0.02);
+  EXPECT_EQ(seenAt(0.5f), 0);
+  light.flags = glsl::light_flag_two_sided;
+  EXPECT_NEAR(seenAt(-0.5f) / expected, 1, 0.02);
+  EXPECT_NEAR(seenAt(0.5f) / expected, 1, 0.02);
 }
 
 /// Fog under a sun of radius 0.1 radians and half a plane 1 m above the viewing ray, whose edge lies
