@@ -3,6 +3,7 @@
 // Fresnel's angles compare Bagher, Snyder and Nowrouzezahrai 2016, A Non-Parametric Factor Microfacet Model
 // for Isotropic BRDFs.
 #include <fmt/format.h>
+#include <tbb/parallel_for.h>
 
 #include <algorithm>
 #include <array>
@@ -355,11 +356,12 @@ FactoredBrdf fitLogarithms(const std::vector<BrdfSample>& samples, const FitSett
   fit.name = nameOf(layout, settings);
   const dvec3 diffuse = settings.terms > 1 ? diffuseFloor(samples) - floor : dvec3(0);
   std::vector<vec3> texels(static_cast<std::size_t>(layout.count() * settings.terms), vec3(0));
-  for (int c = 0; c < 3; ++c) {
+  // Channels have nothing in common but the samples.
+  tbb::parallel_for(0, 3, [&](int c) {
     ChannelFit channel(layout, samples, shares, c, floor[c]);
     if (!(channel.mean() > 1e-9 * floor[c])) {  // the floor is all there is
       fit.scale[c] = 0;
-      continue;
+      return;
     }
     channel.solveLogarithms(diffuse[c]);
     if (settings.terms > 1) channel.addProduct(diffuse[c]);
@@ -367,7 +369,7 @@ FactoredBrdf fitLogarithms(const std::vector<BrdfSample>& samples, const FitSett
     std::vector<double> logs = channel.logs();
     fit.scale[c] = takeScale(logs, layout, shares[brightestOf(samples, c)]);
     for (std::size_t i = 0; i < logs.size(); ++i) texels[i][c] = static_cast<float>(logs[i]);
-  }
+  });
   fit.tables = tablesOf(layout, texels, settings);
   return fit;
 }

@@ -1,6 +1,7 @@
 // Sums of products of a function of the half vector and one of the difference: Kautz and McCool 1999,
 // Interactive Rendering with Arbitrary BRDFs using Separable Approximations.
 #include <fmt/format.h>
+#include <tbb/parallel_for.h>
 
 #include <algorithm>
 #include <cmath>
@@ -207,11 +208,11 @@ FactoredBrdf fitSvd(const Brdf& brdf, const FitSettings& settings, const dvec3& 
       settings.texels, settings.texels, settings.terms, settings.format,
       std::vector<glm::vec3>(side * static_cast<std::size_t>(settings.terms), glm::vec3(0))};
   fit.tables.assign(2, empty);
-  for (int c = 0; c < 3; ++c) {
+  tbb::parallel_for(0, 3, [&](int c) {
     std::vector<double> rows;
     const std::vector<double> columns = matrices[static_cast<std::size_t>(c)].factors(settings.terms, rows);
     fit.scale[c] = store(fit.tables[0], c, rows) * store(fit.tables[1], c, columns);
-  }
+  });
   spreadLayers(fit.tables[0], matrices[0].knownRows());
   spreadLayers(fit.tables[1], matrices[0].knownColumns());
   for (FactorTable& table : fit.tables) table.round();

@@ -182,15 +182,40 @@ double cosineLambda(double cosine, double roughness) {
   return std::max(0.0, 0.5 * (roughness * sine * std::exp(-a * a) / kRootPi - cosine * std::erfc(a)));
 }
 
-double maskingOverCosine(const TorranceSparrow& material, double nDotL, double nDotV) {
-  const double m = clampedRoughness(material);
-  const double fromL = cosineLambda(nDotL, m), fromV = cosineLambda(nDotV, m);
-  if (material.masking == Masking::product) return nDotL / (nDotL + fromL) / (4 * (nDotV + fromV));
-  if (nDotL <= 0 && nDotV <= 0) return 1 / (4 * (fromL + fromV));
-  return nDotL / (4 * (nDotL * nDotV + nDotV * fromL + nDotL * fromV));
+namespace {
+
+/// Is the cosine of a direction and its cosineLambda().
+struct Masked {
+  double cosine, lambda;
+};
+Masked maskedAt(const TorranceSparrow& material, double cosine) {
+  return {cosine, cosineLambda(cosine, clampedRoughness(material))};
+}
+double maskingOfBoth(Masking masking, const Masked& l, const Masked& v) {
+  if (masking == Masking::product) return l.cosine / (l.cosine + l.lambda) / (4 * (v.cosine + v.lambda));
+  if (l.cosine <= 0 && v.cosine <= 0) return 1 / (4 * (l.lambda + v.lambda));
+  return l.cosine / (4 * (l.cosine * v.cosine + v.cosine * l.lambda + l.cosine * v.lambda));
 }
 
-namespace {
+/// Returns what a factor is at the places of the texels along an axis.
+template <class Value>
+auto alongAxis(int texels, const Value& value) {
+  std::vector<decltype(value(0.0))> row;
+  for (int i = 0; i < texels; ++i) row.push_back(value(static_cast<double>(i) / (texels - 1)));
+  return row;
+}
+
+/// Returns the table of a function of what stands at a texel's column and at its row.
+template <class Column, class Row, class Value>
+FactorTable crossTable(const std::vector<Column>& columns, const std::vector<Row>& rows, TableFormat format,
+                       const Value& value) {
+  FactorTable table{static_cast<int>(columns.size()), static_cast<int>(rows.size()), 1, format, {}};
+  table.texels.reserve(columns.size() * rows.size());
+  for (const Row& row : rows)
+    for (const Column& column : columns) table.texels.emplace_back(value(column, row));
+  table.round();
+  return table;
+}
 
 /// Returns the largest D. The Gaussian of the angle has it at n; Beckmann's distribution, with 1 / (n.h)^2 =
 /// q, is q^2 exp(-(q - 1) / m^2), which rises away from n where the width m is above sqrt(1/2).
@@ -201,6 +226,10 @@ double largestDistribution(const TorranceSparrow& material) {
 }
 
 }  // namespace
+
+double maskingOverCosine(const TorranceSparrow& material, double nDotL, double nDotV) {
+  return maskingOfBoth(material.masking, maskedAt(material, nDotL), maskedAt(material, nDotV));
+}
 
 FactoredBrdf torranceSparrowTables(const TorranceSparrow& material, int width, int height, bool warped,
                                    TableFormat format) {
@@ -215,16 +244,21 @@ FactoredBrdf torranceSparrowTables(const TorranceSparrow& material, int width, i
   result.warped = warped;
   result.name = fmt::format("tables {} x {}, {}", width, height, warped ? "warped" : "cosines");
   result.scale = dvec3(largest * unit);
-  result.tables.push_back(FactorTable::of({width, height, 1}, format, [&](const dvec3& place) {
-    const double distance = warped ? 1 - place.y : std::sqrt(1 - place.y);
-    return reflectance(material.fresnel, place.x, material.eta, material.k) *
-           (normalDistribution(material, distance) / largest);
-  }));
-  result.tables.push_back(FactorTable::of({width, height, 1}, format, [&](const dvec3& place) {
-    const dvec3 cosine = warped ? place * place : place;
-    const double value = maskingOverCosine(material, cosine.x, cosine.y) / unit;
-    return dvec3(bytes ? std::min(value, 1.0) : value);
-  }));
+  // What depends on one coordinate is worked out once for all texels that share it.
+  const auto fresnel = [&](double place) {
+    return reflectance(material.fresnel, place, material.eta, material.k);
+  };
+  const auto distribution = [&](double place) {
+    return normalDistribution(material, warped ? 1 - place : std::sqrt(1 - place)) / largest;
+  };
+  const auto masked = [&](double place) { return maskedAt(material, warped ? place * place : place); };
+  result.tables.push_back(crossTable(alongAxis(width, fresnel), alongAxis(height, distribution), format,
+                                     [](const dvec3& f, double d) { return f * d; }));
+  result.tables.push_back(crossTable(alongAxis(width, masked), alongAxis(height, masked), format,
+                                     [&](const Masked& l, const Masked& v) {
+                                       const double value = maskingOfBoth(material.masking, l, v) / unit;
+                                       return dvec3(bytes ? std::min(value, 1.0) : value);
+                                     }));
   return result;
 }
 

@@ -58,7 +58,7 @@ GrooveBrdf::GrooveBrdf(const Groove& groove)
   const auto end = [&](double side, std::size_t strip) {
     return glm::dvec2(side, tangent_) * (0.5 * width * static_cast<double>(strip));
   };
-  transport_.assign(count * count, glm::dvec3(0));
+  sums_.assign(3 * (strips_ + 1) * (strips_ + 1), glm::dvec3(0));
   for (int channel = 0; channel < 3; ++channel) {
     const double rising = std::sqrt(static_cast<double>(groove.rising[channel]));
     const double falling = std::sqrt(static_cast<double>(groove.falling[channel]));
@@ -76,16 +76,37 @@ GrooveBrdf::GrooveBrdf(const Groove& groove)
       }
     matrix.invert();
     const auto root = [&](std::size_t strip) { return strip < strips_ ? rising : falling; };
+    std::vector<double> transport;
+    transport.reserve(count * count);
     for (std::size_t i = 0; i < count; ++i)
       for (std::size_t j = 0; j < count; ++j)
-        transport_[i * count + j][channel] = root(i) * matrix.at(i, j) * root(j) * std::numbers::inv_pi;
+        transport.push_back(root(i) * matrix.at(i, j) * root(j) * std::numbers::inv_pi);
+    addSums(transport, channel);
   }
 }
 
-std::vector<double> GrooveBrdf::exposure(const glm::dvec3& d) const {
-  std::vector<double> shares(2 * strips_, 0.0);
-  if (!(d.z > 0)) return shares;
-  const double width = 1 / static_cast<double>(strips_);
+void GrooveBrdf::addSums(const std::vector<double>& transport, int channel) {
+  for (std::size_t pair = 0; pair < 3; ++pair) {
+    const std::size_t one = pair / 2, other = (pair + 1) / 2;  // walls
+    // All terms are positive, so that nothing cancels.
+    for (std::size_t i = strips_; i-- > 0;) {
+      double row = 0;
+      for (std::size_t j = strips_; j-- > 0;) {
+        row += transport[(one * strips_ + i) * 2 * strips_ + other * strips_ + j];
+        sums_[index(pair, i, j)][channel] = row + sums_[index(pair, i + 1, j)][channel];
+      }
+    }
+    if (one != other) continue;
+    for (std::size_t i = 0; i < strips_; ++i)  // to the bit, as f is to be reciprocal
+      for (std::size_t j = 0; j < i; ++j)
+        sums_[index(pair, i, j)][channel] = sums_[index(pair, j, i)][channel];
+  }
+}
+
+GrooveBrdf::Walls GrooveBrdf::exposure(const glm::dvec3& d) const {
+  Walls walls;
+  if (!(d.z > 0)) return walls;
+  const auto strips = static_cast<double>(strips_);
   for (std::size_t wall = 0; wall < 2; ++wall) {
     const double facing = wall == 0 ? -d.x : d.x;  // towards the opposite crest
     const double cosine = cosine_ * d.z + sine_ * facing;
@@ -93,47 +114,44 @@ std::vector<double> GrooveBrdf::exposure(const glm::dvec3& d) const {
     // A point t of the way up sees d over the opposite crest where d.z / facing >= tan(slope) (1 - t) / (1 +
     // t).
     const double rise = tangent_ * std::max(facing, 0.0);
-    const double lowest = std::max((rise - d.z) / (rise + d.z), 0.0);
-    for (std::size_t i = 0; i < strips_; ++i) {
-      const double below = static_cast<double>(i) * width;
-      const double seen = std::clamp((below + width - lowest) / width, 0.0, 1.0);
-      shares[wall * strips_ + i] = 0.5 * width / cosine_ * seen * cosine / d.z;
-    }
+    const double hidden = strips * std::max((rise - d.z) / (rise + d.z), 0.0);
+    const std::size_t strip = std::min(static_cast<std::size_t>(hidden), strips_ - 1);
+    walls[wall] = {.amount = 0.5 * cosine / (strips * cosine_ * d.z),
+                   .strip = strip,
+                   .hidden = hidden - static_cast<double>(strip)};
   }
-  return shares;
+  return walls;
 }
 
-std::vector<glm::dvec3> GrooveBrdf::radiosity(const std::vector<double>& light) const {
-  std::vector<glm::dvec3> radiances(light.size(), glm::dvec3(0));
-  for (std::size_t i = 0; i < light.size(); ++i)
-    for (std::size_t j = 0; j < light.size(); ++j)
-      radiances[i] += transport_[i * light.size() + j] * light[j];
-  return radiances;
+glm::dvec3 GrooveBrdf::reflected(const Walls& light, const Walls& view) const {
+  glm::dvec3 sum(0);
+  for (std::size_t lit = 0; lit < 2; ++lit)
+    for (std::size_t seen = 0; seen < 2; ++seen) {
+      const double amount = light[lit].amount * view[seen].amount;
+      if (!(amount > 0)) continue;
+      const bool turned = seen > lit;  // the pair has the rising wall first
+      const Wall &one = turned ? light[lit] : view[seen], &other = turned ? view[seen] : light[lit];
+      // Of the first strip only a part counts: between the sum with it and that without it.
+      const glm::dvec3* whole = &sums_[index(lit + seen, one.strip, other.strip)];
+      const glm::dvec3* without = whole + strips_ + 1;
+      sum += amount * glm::mix(glm::mix(whole[0], whole[1], other.hidden),
+                               glm::mix(without[0], without[1], other.hidden), one.hidden);
+    }
+  return sum;
 }
 
 glm::dvec3 GrooveBrdf::evaluate(const glm::dvec3& l, const glm::dvec3& v) const {
-  const std::vector<glm::dvec3> radiances = radiosity(exposure(l));
-  const std::vector<double> seen = exposure(v);
-  glm::dvec3 sum(0);
-  for (std::size_t i = 0; i < seen.size(); ++i) sum += seen[i] * radiances[i];
-  return sum;
+  return reflected(exposure(l), exposure(v));
 }
 
 AnisotropicTable GrooveBrdf::table(int size) const {
   AnisotropicTable table{.size = size, .values = {}};
-  std::vector<std::vector<double>> exposures;
+  std::vector<Walls> exposures;
   for (int y = 0; y < size; ++y)
     for (int x = 0; x < size; ++x) exposures.push_back(exposure(glm::dvec3(table.texelDirection(x, y))));
-  const std::size_t texels = exposures.size();
-  table.values.resize(texels * texels);
-  for (std::size_t l = 0; l < texels; ++l) {
-    const std::vector<glm::dvec3> radiances = radiosity(exposures[l]);
-    for (std::size_t v = 0; v < texels; ++v) {
-      glm::dvec3 sum(0);
-      for (std::size_t i = 0; i < radiances.size(); ++i) sum += exposures[v][i] * radiances[i];
-      table.values[v * texels + l] = glm::vec3(sum);
-    }
-  }
+  table.values.reserve(exposures.size() * exposures.size());
+  for (const Walls& view : exposures)
+    for (const Walls& light : exposures) table.values.emplace_back(reflected(light, view));
   return table;
 }
 

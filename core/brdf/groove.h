@@ -2,6 +2,8 @@
 // whose colour changes with the direction that it is seen from.
 #pragma once
 
+#include <array>
+#include <cstddef>
 #include <glm/glm.hpp>
 #include <vector>
 
@@ -28,20 +30,36 @@ class LIMN_API GrooveBrdf {
   /// It is reciprocal to rounding.
   glm::dvec3 evaluate(const glm::dvec3& l, const glm::dvec3& v) const;
 
-  /// Returns the table of it, for which the light of each texel is distributed once.
+  /// Returns the table of it.
   AnisotropicTable table(int size) const;
 
  private:
-  /// Each strip's length times the cosine of d there times its share that lies between the crests as seen
-  /// along d, over d.z: of the light that a unit of surface receives from d, what falls on the strip.
-  std::vector<double> exposure(const glm::dvec3& d) const;
-  /// Returns the radiance of each strip, all bounces included, under light of such exposure; seen with the
-  /// exposure of the viewer's direction, its sum is f.
-  std::vector<glm::dvec3> radiosity(const std::vector<double>& light) const;
+  /// Is what of the light that a unit of surface receives from a direction falls on a wall.
+  struct Wall {
+    double amount = 0;      ///< on a strip that lies wholly between the crests as seen along the direction
+    std::size_t strip = 0;  ///< the lowest one that lies there in part
+    double hidden = 0;      ///< the part of it that does not
+  };
+  using Walls = std::array<Wall, 2>;  ///< rising, falling
+
+  /// Returns it for a unit vector towards the light. A strip's amount is its length times the cosine of d
+  /// there over d.z.
+  Walls exposure(const glm::dvec3& d) const;
+  /// Returns f, given the exposures to both directions.
+  glm::dvec3 reflected(const Walls& light, const Walls& view) const;
+  /// Adds up a channel's radiance of each strip by light on each, in rows of the strips of both walls.
+  void addSums(const std::vector<double>& transport, int channel);
+  /// Returns where the sums of a pair of walls hold that of the strips from `i` on, the first wall's, and
+  /// from `j` on.
+  std::size_t index(std::size_t pair, std::size_t i, std::size_t j) const {
+    return (pair * (strips_ + 1) + i) * (strips_ + 1) + j;
+  }
 
   double tangent_ = 1, cosine_ = 1, sine_ = 0;  ///< of the slope
-  std::size_t strips_ = 0;                      ///< of one wall; those of the rising wall come first
-  std::vector<glm::dvec3> transport_;           ///< radiance of a strip by the light on another, symmetric
+  std::size_t strips_ = 0;                      ///< of one wall
+  /// Holds sums over strips of the radiance of one by light on another, all bounces included, the same for
+  /// both ways: of pairs of rising and rising, rising and falling, and falling and falling walls.
+  std::vector<glm::dvec3> sums_;
 };
 
 }  // namespace limn::brdf

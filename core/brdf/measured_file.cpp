@@ -18,6 +18,12 @@ constexpr std::string_view kField = "disc_pairs";
 constexpr std::size_t kDimensions = 5;
 constexpr float kLargestHalf = 65504;
 
+/// Says whether a file is called .bsdf: scenes have the names of their files in quotes.
+bool isBsdf(std::string_view name) {
+  if (name.ends_with('\'')) name.remove_suffix(1);
+  return name.ends_with(".bsdf");
+}
+
 bool isSide(std::size_t texels) {
   return texels >= 1 && texels <= static_cast<std::size_t>(kMostDiscTexels);
 }
@@ -45,7 +51,7 @@ AnisotropicTable discPairs(const TensorFile& file, std::string_view name) {
 }  // namespace
 
 MeasuredBrdf decodeMeasured(std::span<const std::byte> bytes, std::string_view name) {
-  if (!isTensorFile(bytes) && !name.ends_with(".bsdf")) return decodeMerl(bytes, name);
+  if (!isTensorFile(bytes) && !isBsdf(name)) return decodeMerl(bytes, name);
   const TensorFile file(bytes, name);
   if (file.has(kField)) return discPairs(file, name);
   return decodeEpfl(bytes, name);

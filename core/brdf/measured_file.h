@@ -29,9 +29,9 @@ inline constexpr int kMostDiscTexels = 48;
 /// How the numbers of a table over two directions are kept in a file.
 enum class MeasuredFormat { half, float32 };
 
-/// Returns the table of a file's content. What begins as the RGL's container, or whose name ends in .bsdf, is
-/// limn's own where it has the array "disc_pairs" and the RGL's otherwise; all else is MERL's. Throws Error
-/// that begins with `name` where the content is no such file.
+/// Returns the table of a file's content. What begins as the RGL's container, or whose name ends in .bsdf, in
+/// quotes or not, is limn's own where it has the array "disc_pairs" and the RGL's otherwise; all else is
+/// MERL's. Throws Error that begins with `name` where the content is no such file.
 LIMN_API MeasuredBrdf decodeMeasured(std::span<const std::byte> bytes, std::string_view name);
 LIMN_API MeasuredBrdf readMeasured(const std::filesystem::path& path);
 

@@ -61,13 +61,18 @@ class Sweep {
  public:
   Sweep(const HeightField& field, double azimuth) : field_(field) {
     direction_ = glm::dvec2(std::cos(azimuth), std::sin(azimuth)) / field.spacing();
+    // Along a side of one texel nothing changes: of a line only its way along the other side counts.
+    for (int axis = 0; axis < 2; ++axis)
+      if (field.size()[axis] == 1 && direction_[1 - axis] != 0) direction_[axis] = 0;
     major_ = std::abs(direction_.x) >= std::abs(direction_.y) ? 0 : 1;
+    const bool level = field.size()[major_] == 1;  // all along the line
     const int minor = 1 - major_;
     forward_ = direction_[major_] > 0 ? 1 : -1;
     tilt_ = direction_[minor] / std::abs(direction_[major_]);
     metres_ = 1 / std::abs(direction_[major_]);
     length_ = field.size()[major_];
-    const double reach = std::min(64 * (field.highest() - field.lowest()), 8 * largestSide(field));
+    const double reach =
+        level ? 0 : std::min(64 * (field.highest() - field.lowest()), 8 * largestSide(field));
     ahead_ = static_cast<int>(std::ceil(std::min(reach / metres_, 8.0 * largestSize(field)))) + 1;
     // Lines are numbered by where they meet the first texel of their way; periodic ones return after one
     // size.

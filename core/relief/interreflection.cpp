@@ -89,28 +89,41 @@ std::optional<glm::dvec2> traceRay(const HeightField& field, const glm::dvec2& p
   return std::nullopt;
 }
 
-BouncePaths traceBounces(const HeightField& field, BounceDirections directions, int paths,
-                         std::uint32_t seed) {
+void traceBounces(const HeightField& field, BounceDirections directions, int paths,
+                  const BouncePathsTaker& take, std::uint32_t seed) {
   if (paths < 1) throw UsageError(fmt::format("{} paths of interreflection: at least 1 is needed", paths));
   const double steepest = field.steepest(), lowest = -steepest / std::sqrt(1 + steepest * steepest);
   const std::vector<glm::vec3> shared = sharedDirections(directions, paths, lowest, seed);
-  BouncePaths result{.paths = paths, .list = {}};
-  result.list.resize(field.texels() * static_cast<std::size_t>(paths));
   forTexels(field, [&](const glm::ivec2& texel, std::size_t number) {
     const glm::dvec3 n = field.normal(texel);
-    BouncePath* const first = result.list.data() + number * static_cast<std::size_t>(paths);
+    std::vector<BouncePath> list(static_cast<std::size_t>(paths));
     double sum = 0;
     for (int i = 0; i < paths; ++i) {
       const glm::dvec3 d = shared.empty() ? glsl::own_frame_direction(i, paths, glm::vec3(n), 0)
                                           : shared[static_cast<std::size_t>(i)];
       const double cosine = shared.empty() ? 1 : std::max(glm::dot(n, d), 0.0);
       if (cosine == 0) continue;
-      if (const auto place = traceRay(field, texel, d)) first[i].place = *place;
-      first[i].weight = static_cast<float>(cosine);
+      BouncePath& path = list[static_cast<std::size_t>(i)];
+      if (const auto place = traceRay(field, texel, d)) path.place = *place;
+      path.weight = static_cast<float>(cosine);
       sum += cosine;
     }
-    for (int i = 0; i < paths && sum > 0; ++i) first[i].weight *= static_cast<float>(std::numbers::pi / sum);
+    if (sum > 0)
+      for (BouncePath& path : list) path.weight *= static_cast<float>(std::numbers::pi / sum);
+    take(number, list);
   });
+}
+
+BouncePaths traceBounces(const HeightField& field, BounceDirections directions, int paths,
+                         std::uint32_t seed) {
+  const std::size_t each = static_cast<std::size_t>(std::max(paths, 0));
+  BouncePaths result{.paths = paths, .list = std::vector<BouncePath>(field.texels() * each)};
+  traceBounces(
+      field, directions, paths,
+      [&](std::size_t texel, std::span<const BouncePath> list) {
+        std::ranges::copy(list, result.list.begin() + static_cast<std::ptrdiff_t>(texel * each));
+      },
+      seed);
   return result;
 }
 

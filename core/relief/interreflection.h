@@ -1,9 +1,12 @@
 // Declares rays from bump to bump of a height field, and the paths along which light comes to its texels.
 #pragma once
 
+#include <cstddef>
 #include <cstdint>
+#include <functional>
 #include <glm/glm.hpp>
 #include <optional>
+#include <span>
 #include <vector>
 
 #include "core/base/export.h"
@@ -40,8 +43,15 @@ struct LIMN_API BouncePaths {
   std::vector<BouncePath> list;
 };
 
-/// Returns `paths` paths to each texel; random directions are the same for the same seed. Throws UsageError
-/// for less than one.
+/// Takes the paths to one texel.
+using BouncePathsTaker = std::function<void(std::size_t texel, std::span<const BouncePath> paths)>;
+
+/// Traces `paths` paths to each texel and hands them to `take`, which several threads call at once; random
+/// directions are the same for the same seed. Throws UsageError for less than one.
+LIMN_API void traceBounces(const HeightField& field, BounceDirections directions, int paths,
+                           const BouncePathsTaker& take, std::uint32_t seed = 1);
+
+/// Returns the same paths, of all texels.
 LIMN_API BouncePaths traceBounces(const HeightField& field, BounceDirections directions, int paths,
                                   std::uint32_t seed = 1);
 

@@ -215,7 +215,7 @@ uint32_t nearestTexel(const relief::HeightField& field, const glm::vec2& place) 
 
 void appendBounces(std::vector<uint32_t>& words, const relief::HeightField& field,
                    const ReliefMapDesc& desc) {
-  const size_t texels = field.texels(), first = words.size(), paths = static_cast<size_t>(desc.paths);
+  const size_t texels = field.texels(), first = words.size();
   if (texels >= glsl::bounce_sky)
     throw UsageError(
         fmt::format("a height map of {} x {} texels is too large for light from bump to bump: "
@@ -228,21 +228,21 @@ void appendBounces(std::vector<uint32_t>& words, const relief::HeightField& fiel
   for (int y = 0; y < field.size().y; ++y)
     for (int x = 0; x < field.size().x; ++x)
       word(glsl::bounce_slope_plane, field.index({x, y})) = packedSlope(field.slope({x, y}));
-  const relief::BouncePaths traced = relief::traceBounces(field, desc.bounceDirections, desc.paths);
-  for (size_t texel = 0; texel < texels; ++texel) {
-    const std::span list(traced.list.data() + texel * paths, paths);
+  // Packed at once: all paths of a map would take three times as much.
+  const auto take = [&](size_t texel, std::span<const relief::BouncePath> list) {
     const float largest = std::ranges::max(list, {}, &relief::BouncePath::weight).weight;
     float sum = 0;
-    for (size_t i = 0; i < paths; ++i) {
+    for (size_t i = 0; i < list.size(); ++i) {
       const uint32_t packed = glsl::bounce_path_pack(
           {.texel = list[i].hits() ? nearestTexel(field, list[i].place) : glsl::bounce_sky,
            .weight = largest > 0 ? list[i].weight / largest : 0});
       sum += glsl::bounce_path_unpack(packed).weight;
       word(glsl::bounce_path_plane + i, texel) = packed;
     }
-    const float scale = sum > 0 ? static_cast<float>(paths) / sum : 0;
+    const float scale = sum > 0 ? static_cast<float>(desc.paths) / sum : 0;
     word(glsl::bounce_scale_plane, texel) = std::bit_cast<uint32_t>(scale);
-  }
+  };
+  relief::traceBounces(field, desc.bounceDirections, desc.paths, take);
 }
 
 void appendField(std::vector<uint32_t>& words, const relief::HeightField& field, const ReliefMapDesc& desc) {

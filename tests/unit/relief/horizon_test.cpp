@@ -100,6 +100,30 @@ TEST(ReliefHorizonTest, LinesEndAfterAsManyTexelsOfStretchedTiles) {
   }
 }
 
+/// Ridges as a profile one texel wide, whose texels are square: 8 sizes of the map ahead of each texel across
+/// the profile would be 65536 texels that are all alike.
+TEST(ReliefHorizonTest, ProfilesOfOneTexelAreFollowedAlongTheirLength) {
+  constexpr int size = 8192;
+  std::vector<float> values;
+  for (int i = 0; i < size; ++i) values.push_back(static_cast<float>(std::abs(i % 64 - 32)) / 32);
+  for (const Wrap wrap : {Wrap::periodic, Wrap::clamped})
+    for (const int axis : {0, 1}) {
+      glm::ivec2 texels(1);
+      texels[axis] = size;
+      const HeightField field(texels, values, glm::dvec2(texels) * 1e-3, 0.05, 0, wrap);
+      const Horizons swept = sweepHorizons(field, 12);
+      for (int i = 0; i < 12; ++i)
+        for (const int at : {0, 31, 32, 50, 4100, size - 1}) {
+          glm::dvec2 place(0);
+          place[axis] = at;
+          const double angle = swept.angle(i), along = axis == 0 ? std::cos(angle) : std::sin(angle),
+                       expected = std::abs(along) < 1e-9 ? 0 : exactHorizon(field, place, angle);
+          EXPECT_NEAR(swept.tangent(i, static_cast<std::size_t>(at)), expected, 1e-5 * (1 + expected))
+              << axis << ' ' << i << ' ' << at;
+        }
+    }
+}
+
 TEST(ReliefHorizonTest, OfFlatAndSmallFieldsIsLevel) {
   for (const Wrap wrap : {Wrap::periodic, Wrap::clamped})
     for (const glm::ivec2& size : {glm::ivec2(1, 1), glm::ivec2(1, 7), glm::ivec2(7, 1), glm::ivec2(5, 5)}) {

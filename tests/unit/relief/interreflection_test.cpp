@@ -171,6 +171,23 @@ TEST(ReliefBounceTest, WeightsAddUpToPi) {
   EXPECT_THROW(traceBounces(field, BounceDirections::shared, 0), UsageError);
 }
 
+TEST(ReliefBounceTest, PathsOfEachTexelAreHandedOverOnce) {
+  constexpr int kPaths = 12, kSeed = 7;
+  const HeightField field = eggCrate(16);
+  const BouncePaths all = traceBounces(field, BounceDirections::publishedDeeper, kPaths, kSeed);
+  std::vector<int> times(field.texels(), 0), alike(field.texels(), 0);
+  const auto take = [&](std::size_t texel, std::span<const BouncePath> paths) {
+    ++times[texel];
+    for (std::size_t i = 0; i < paths.size(); ++i) {
+      const BouncePath& same = all.list[texel * kPaths + i];
+      if (paths[i].place == same.place && paths[i].weight == same.weight) ++alike[texel];
+    }
+  };
+  traceBounces(field, BounceDirections::publishedDeeper, kPaths, take, kSeed);
+  EXPECT_EQ(times, std::vector<int>(field.texels(), 1));
+  EXPECT_EQ(alike, std::vector<int>(field.texels(), kPaths));
+}
+
 TEST(ReliefBounceTest, FlatFieldsHaveNone) {
   for (const glm::ivec2& size : {glm::ivec2(1, 1), glm::ivec2(1, 6), glm::ivec2(6, 6)}) {
     const HeightField flat(size, std::vector<float>(static_cast<std::size_t>(size.x * size.y), -1.0f),

@@ -164,6 +164,9 @@ TEST_F(MeasuredMaterial, RefusesFilesInOneLine) {
   EXPECT_THAT(loadError(scene({{{"model", "measured"}, {"file", "none.bsdf"}}})), HasSubstr("none.bsdf"));
   EXPECT_THAT(loadError(scene({{{"model", "measured"}, {"file", "../x.bsdf"}}})),
               HasSubstr("lies outside the scene's folder"));
+  write("scene/short.bsdf", std::vector<std::byte>(11));
+  EXPECT_THAT(loadError(scene({{{"model", "measured"}, {"file", "short.bsdf"}}})),
+              HasSubstr("limn_material file 'short.bsdf': not a BRDF file of the RGL"));
   write("scene/short.binary", std::vector<std::byte>(11));
   EXPECT_THAT(loadError(scene({{{"model", "measured"}, {"file", "short.binary"}}})),
               HasSubstr("material 0 limn_material file 'short.binary'"));
