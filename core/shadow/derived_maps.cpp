@@ -9,6 +9,7 @@
 
 #include "core/base/error.h"
 #include "core/shadow/private/summed_area_passes.h"
+#include "glsl/shadow/min_max_pyramid.glsl"
 #include "glsl/shadow/min_max_windows.glsl"
 #include "glsl/shadow/n_buffer.glsl"
 #include "glsl/shadow/summed_area_table.glsl"
@@ -23,6 +24,11 @@ struct KnownTable {
   TextureHandle source;
   SatDesc desc;
   SummedAreaTable table;
+};
+
+struct KnownPyramid {
+  TextureHandle source;
+  MinMaxPyramid pyramid;
 };
 
 struct KnownMoments {
@@ -44,30 +50,39 @@ TextureHandle knownOr(std::vector<KnownTexture>& known, TextureHandle source, co
   return known.back().texture;
 }
 
+/// What shaders call the levels of a pass, the one that it starts from first.
+constexpr std::array<const char*, 4> kLevelImages{"level_0", "level_1", "level_2", "level_3"};
+
+std::string passName(std::string_view map, int first, int last) {
+  return first == last ? fmt::format("{} level {}", map, last)
+                       : fmt::format("{} levels {} to {}", map, first, last);
+}
+
+/// The levels that boxes of up to `side` texels are looked up in (glsl/shadow/min_max_pyramid.glsl); 0: all.
+int pyramidLevels(const gpu::TextureDesc& maps, int side) {
+  const int all = gpu::fullMipLevels(maps.width, maps.height);
+  return side > 0 ? glsl::min_max_level(side, all) + 1 : all;
+}
+
 /// The first pass makes level 0 and the next ones from the shadow maps, each further pass up to three
 /// from the last level of the pass before: a dispatch of a small level waits longer than it works.
-TextureHandle addMinMaxPyramid(frame::FrameGraph& graph, TextureHandle source, bool cacheable) {
+TextureHandle addMinMaxPyramid(frame::FrameGraph& graph, TextureHandle source, bool cacheable, int levels) {
   constexpr std::string_view name = "min-max pyramid";
-  constexpr std::array<const char*, 4> images{"level_0", "level_1", "level_2", "level_3"};
-  const gpu::TextureDesc desc = derivedDesc(graph, source, name, GL_RG32F, 0);
+  const gpu::TextureDesc desc = derivedDesc(graph, source, name, GL_RG32F, levels);
   TextureHandle pyramid = graph.createTexture(name, desc);
   int last = 0;  // level made so far, and the one that the next pass starts from
   do {
     const bool base = last == 0;
     const int first = last;
-    last = std::min(first + static_cast<int>(images.size()) - 1, desc.levels - 1);
-    const int made = base ? 0 : first + 1;
-    frame::PassBuilder pass =
-        graph.addPass(made == last ? fmt::format("{} level {}", name, last)
-                                   : fmt::format("{} levels {} to {}", name, made, last),
-                      "shadow");
+    last = std::min(first + static_cast<int>(kLevelImages.size()) - 1, desc.levels - 1);
+    frame::PassBuilder pass = graph.addPass(passName(name, base ? 0 : first + 1, last), "shadow");
     pass.role(frame::PassRole::filter);
     if (base) pass.read(source, Access::sampled, "depth", "shadow maps");
     pyramid = pass.write(pyramid, base ? Access::imageStore : Access::imageLoadStore,
-                         frame::ShaderName(images[0]).level(first),
+                         frame::ShaderName(kLevelImages[0]).level(first),
                          base ? "finest levels" : "next levels from the last one");
     for (int level = first + 1; level <= last; ++level)
-      pass.also(frame::ShaderName(images[static_cast<size_t>(level - first)]).level(level));
+      pass.also(frame::ShaderName(kLevelImages[static_cast<size_t>(level - first)]).level(level));
     const frame::ProgramHandle program =
         pass.program({.files = {"glsl/shadow/min_max_pyramid.comp.glsl"},
                       .defines = {{"BASE", base ? "1" : "0"}, {"COARSER", std::to_string(last - first)}}});
@@ -80,31 +95,39 @@ TextureHandle addMinMaxPyramid(frame::FrameGraph& graph, TextureHandle source, b
   return pyramid;
 }
 
-/// Level 0 from the shadow maps, each further level from the one before: a pass each, so that the graph puts
-/// the barriers between them.
+/// Level 0 from the shadow maps, level 1 from that, and the others, of which each has more to read the more
+/// levels lie between, up to three at once: most of the work is in the first two.
 TextureHandle addMinMaxWindows(frame::FrameGraph& graph, TextureHandle source, bool cacheable) {
   constexpr std::string_view name = "min-max windows";
   const gpu::TextureDesc& maps = graph.desc(source);
   const gpu::TextureDesc desc = derivedDesc(graph, source, name, GL_RG32F,
                                             glsl::min_max_windows_levels(std::max(maps.width, maps.height)));
   TextureHandle windows = graph.createTexture(name, desc);
-  for (int level = 0; level < desc.levels; ++level) {
-    frame::PassBuilder pass = graph.addPass(fmt::format("{} level {}", name, level), "shadow");
+  int first = 0, last = 0;  // levels of a pass
+  do {
+    const bool base = first == 0;
+    last = first < 2 ? first : std::min(first + 2, desc.levels - 1);
+    frame::PassBuilder pass = graph.addPass(passName(name, first, last), "shadow");
     pass.role(frame::PassRole::filter);
-    if (level == 0) pass.read(source, Access::sampled, "depth", "shadow maps");
-    windows = pass.write(windows, level == 0 ? Access::imageStore : Access::imageLoadStore,
-                         frame::ShaderName("coarser").level(level),
-                         level == 0 ? "finest level" : "next level from the one before");
-    if (level > 0) pass.also(frame::ShaderName("finer").level(level - 1));
+    if (base) pass.read(source, Access::sampled, "depth", "shadow maps");
+    windows = pass.write(windows, base ? Access::imageStore : Access::imageLoadStore,
+                         frame::ShaderName(kLevelImages[0]).level(base ? 0 : first - 1),
+                         base ? "finest level" : "next levels from the one before");
+    int rows = base ? desc.height : 0;  // of texels: levels lie below each other, each in whole work groups
+    for (int level = first; level <= last && !base; ++level) {
+      pass.also(frame::ShaderName(kLevelImages[static_cast<size_t>(level - first) + 1]).level(level));
+      rows += 8 * ((std::max(desc.height >> level, 1) + 7) / 8);
+    }
     const frame::ProgramHandle program = pass.program(
-        {.files = {"glsl/shadow/min_max_windows.comp.glsl"}, .defines = {{"BASE", level == 0 ? "1" : "0"}}});
+        {.files = {"glsl/shadow/min_max_windows.comp.glsl"},
+         .defines = {{"BASE", base ? "1" : "0"}, {"COARSER", std::to_string(base ? 0 : last - first + 1)}}});
     if (cacheable) pass.cacheable();
-    pass.execute([program, level, desc](frame::PassContext& context) {
+    pass.execute([program, first, rows, desc](frame::PassContext& context) {
       context.use(program);
-      context.dispatch(std::max(desc.width >> level, 1), std::max(desc.height >> level, 1), desc.layers, 8,
-                       8);
+      context.dispatch(std::max(desc.width >> first, 1), rows, desc.layers, 8, 8);
     });
-  }
+    first = last + 1;
+  } while (first < desc.levels);
   return windows;
 }
 
@@ -174,7 +197,8 @@ SummedAreaTable addTable(frame::FrameGraph& graph, TextureHandle source, const S
 
 struct DerivedMaps::Implementation {
   const gpu::Device& device;
-  std::vector<KnownTexture> pyramids = {}, windows = {}, nBuffers = {};
+  std::vector<KnownPyramid> pyramids = {};
+  std::vector<KnownTexture> windows = {}, nBuffers = {};
   std::vector<KnownTable> tables = {};
   std::vector<KnownMoments> moments = {};
 };
@@ -190,10 +214,16 @@ void DerivedMaps::clear() {
   implementation_->moments.clear();
 }
 
-MinMaxPyramid DerivedMaps::minMaxPyramid(frame::FrameGraph& graph, TextureHandle depth, bool cacheable) {
-  const TextureHandle texture =
-      knownOr(implementation_->pyramids, depth, [&] { return addMinMaxPyramid(graph, depth, cacheable); });
-  return {texture, graph.desc(texture).levels};
+MinMaxPyramid DerivedMaps::minMaxPyramid(frame::FrameGraph& graph, TextureHandle depth, bool cacheable,
+                                         int boxSide) {
+  Implementation& d = *implementation_;
+  const int levels = pyramidLevels(graph.desc(depth), boxSide);
+  for (const KnownPyramid& known : d.pyramids) {
+    if (known.source == depth && known.pyramid.levels >= levels) return known.pyramid;
+  }
+  const TextureHandle texture = addMinMaxPyramid(graph, depth, cacheable, levels);
+  d.pyramids.push_back({depth, {texture, levels}});
+  return d.pyramids.back().pyramid;
 }
 
 TextureHandle DerivedMaps::minMaxWindows(frame::FrameGraph& graph, TextureHandle depth, bool cacheable) {

@@ -11,7 +11,7 @@
 
 namespace limn::shadow {
 
-/// Holds an RG32F array with a full mip chain: (least, greatest) depth. Lookups are in
+/// Holds an RG32F array with a mip chain: (least, greatest) depth. Lookups are in
 /// glsl/shadow/min_max_pyramid.glsl.
 struct MinMaxPyramid {
   frame::TextureHandle texture;
@@ -65,7 +65,10 @@ class LIMN_API DerivedMaps {
   /// Forgets what was built, before another graph is built.
   void clear();
 
-  MinMaxPyramid minMaxPyramid(frame::FrameGraph& graph, frame::TextureHandle depth, bool cacheable);
+  /// Returns the min-max pyramid of `depth`, with the levels that boxes of up to `boxSide` texels along their
+  /// sides are looked up in, or with more of them. 0: with all.
+  MinMaxPyramid minMaxPyramid(frame::FrameGraph& graph, frame::TextureHandle depth, bool cacheable,
+                              int boxSide = 0);
   /// Returns an RG32F array with a mip chain: (least, greatest) depth of overlapping windows, which bound
   /// boxes more tightly than a pyramid for the same time and memory. Lookups are in
   /// glsl/shadow/min_max_windows.glsl.

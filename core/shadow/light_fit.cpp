@@ -117,6 +117,12 @@ struct ViewFit {
   vec3 spread{0};
 };
 
+/// The window of a map that needs to show nothing: past all of its directions and behind all that is there.
+MapWindow emptyWindow(const MapWindow& whole) {
+  const glm::vec2 edge(std::max(whole.high.x, whole.high.y));
+  return {2.f * edge, 3.f * edge, whole.far, 2 * whole.far};
+}
+
 void appendOrthographic(const glsl::Light& light, const vec3& direction, std::span<const Bounds> boxes,
                         const ViewFit& fit, Writer& out) {
   Axes axes = axesOf(light);
@@ -139,11 +145,15 @@ void appendOrthographic(const glsl::Light& light, const vec3& direction, std::sp
   const vec3 origin = centre + middle.x * axes.x + middle.y * axes.y + (middle.z - 0.6f * depth) * axes.z;
   out.light(-direction, false, glsl::shadow_faces_single);
   const MapWindow whole = square(0.5f * width, {0.0999f * depth, 1.1001f * depth});
-  MapWindow window;
-  std::vector<vec3> receivers;
-  const bool fitted = fit.visible != nullptr && fitWindow({origin, axes, false, fit.spread}, *fit.visible,
-                                                          light.own_instance, whole, window, receivers);
-  out.view(glsl::shadow_orthographic, origin, axes, fitted ? steadyWindow(window, whole, out.size) : whole);
+  MapWindow shown = whole;
+  if (fit.visible != nullptr) {
+    MapWindow window;
+    std::vector<vec3> receivers;
+    const bool some = fitWindow({origin, axes, false, fit.spread}, *fit.visible, light.own_instance, whole,
+                                window, receivers);
+    shown = some ? steadyWindow(window, whole, out.size) : emptyWindow(whole);
+  }
+  out.view(glsl::shadow_orthographic, origin, axes, shown);
 }
 
 vec3 samplePoint(const glsl::Light& light, const glm::vec2& sample) {
@@ -216,11 +226,6 @@ LightLayout fitWhole(const glsl::Light& light, std::span<const Bounds> boxes, co
   return both ? cube : LightLayout{glsl::shadow_perspective, glsl::shadow_faces_hemicube, kind};
 }
 
-/// The window of a face that needs to show nothing: past all of its directions and behind all that is there.
-MapWindow emptyWindow(const MapWindow& whole) {
-  return {2.f * whole.high, 3.f * whole.high, whole.far, 2 * whole.far};
-}
-
 /// Appends the faces of the cubes or half cubes of a light's samples, fitted to the view: what blocks a
 /// receiver's light lies in its direction. In an empty face nothing is drawn, and a receiver that it should
 /// have shown would count as uncovered.
@@ -237,16 +242,14 @@ void appendFaces(const glsl::Light& light, const LightLayout& layout, std::span<
   for (const glm::vec2& sample : samples) reach = glm::max(reach, glm::abs(offsetOf(sample, axes)));
   const MapWindow around = wholeWindow(light, light.position, axes, layout, boxes, desc);
   FaceReceivers receivers;
-  const bool some =
-      findFaceReceivers(light.position, axes, visible, light.own_instance, faces, reach, around, receivers);
+  findFaceReceivers(light.position, axes, visible, light.own_instance, faces, reach, around, receivers);
   for (const glm::vec2& sample : samples) {
     const vec3 origin = samplePoint(light, sample);
     out.light(origin, true, layout.faces);
     const MapWindow whole = wholeWindow(light, origin, axes, layout, boxes, desc);
     for (uint32_t face = 0; face < faces; ++face) {
       const Axes own = faceAxes(axes, face);
-      MapWindow window = whole;
-      if (some) window = shiftedFaceWindow(receivers[face], offsetOf(sample, own), whole);
+      MapWindow window = shiftedFaceWindow(receivers[face], offsetOf(sample, own), whole);
       const bool shows =
           window.low.x <= window.high.x && window.low.y <= window.high.y && window.far > whole.near;
       if (shows) {
@@ -275,13 +278,14 @@ void appendWhole(const glsl::Light& light, const LightLayout& layout, std::span<
   if (!sampled || perspective) fit.spread = spreadOf(light, axes, desc.lightSize);
   std::optional<MapWindow> window;
   std::vector<vec3> receivers;
+  bool unseen = false;  // of all that the light reaches the camera sees nothing
   if (fit.visible != nullptr && perspective) {
     const vec3 origin(light.position);
     const MapWindow whole = given ? *given : wholeWindow(light, origin, axes, layout, boxes, desc);
     MapWindow fitted;
-    if (fitWindow({origin, axes, true, fit.spread}, *fit.visible, light.own_instance, whole, fitted,
-                  receivers))
-      window = fitted;
+    unseen = !fitWindow({origin, axes, true, fit.spread}, *fit.visible, light.own_instance, whole, fitted,
+                        receivers);
+    if (!unseen) window = fitted;
   }
   if (toView && sampled && visible != nullptr && count > 2) {
     appendFaces(light, layout, boxes, desc, *visible, out);
@@ -297,6 +301,10 @@ void appendWhole(const glsl::Light& light, const LightLayout& layout, std::span<
     // The second view of a pair looks backwards.
     const uint32_t step = layout.faces == glsl::shadow_faces_pair ? 5 : 1;
     const MapWindow whole = given ? *given : wholeWindow(light, origin, axes, layout, boxes, desc);
+    if (unseen) {
+      out.view(glsl::shadow_perspective, origin, axes, emptyWindow(whole));
+      continue;
+    }
     if (window) {
       const vec3 r = origin - light.position;
       MapWindow own =
@@ -370,6 +378,16 @@ std::optional<MapWindow> partWindow(const glsl::Light& light, const glsl::Light&
   return MapWindow{low, high, range.near, range.far};
 }
 
+/// Of the boxes, with MapFit::view, what lies as near to the light's centre as its range, or as points of the
+/// light themselves: no more is lit, or lies on the way there. Other maps may be asked where light goes on
+/// to. `kept` holds them.
+std::span<const Bounds> withinRange(const glsl::Light& light, std::span<const Bounds> boxes,
+                                    const ShadowMapDesc& desc, std::vector<Bounds>& kept) {
+  if (desc.fit != MapFit::view || light.type == glsl::light_directional || !(light.range > 0)) return boxes;
+  const glm::vec2 sides = glsl::light_sides(light, glsl::light_kind(light), desc.lightSize);
+  return boxesAround(light.position, 1.001f * std::max(light.range, 0.5f * glm::length(sides)), boxes, kept);
+}
+
 std::vector<glsl::Light> partsOf(const glsl::Light& light, const LightLayout& layout,
                                  const ShadowMapDesc& desc) {
   if (layout.parts() == 1) return {light};
@@ -387,9 +405,11 @@ std::vector<glm::vec2> samplesOf(const glsl::Light& light, const ShadowMapDesc& 
 }
 
 LightLayout fitLayout(const glsl::Light& light, std::span<const Bounds> boxes, const ShadowMapDesc& desc) {
-  LightLayout layout = fitWhole(light, boxes, desc);
+  std::vector<Bounds> kept;
+  const std::span<const Bounds> lit = withinRange(light, boxes, desc, kept);
+  LightLayout layout = fitWhole(light, lit, desc);
   if (!isDivisible(light, desc)) return layout;
-  const auto views = desc.views > 0 ? static_cast<uint32_t>(desc.views) : viewsOf(light, layout, boxes, desc);
+  const auto views = desc.views > 0 ? static_cast<uint32_t>(desc.views) : viewsOf(light, layout, lit, desc);
   const glm::uvec2 parts = partsAlongSides(light, desc, views);
   layout.partsU = parts.x;
   layout.partsV = parts.y;
@@ -404,15 +424,17 @@ bool showsNothing(const glsl::ShadowView& view) {
 void appendViews(const glsl::Light& light, uint32_t lightIndex, const LightLayout& layout,
                  std::span<const Bounds> boxes, const ShadowMapDesc& desc, const VisibleScene* visible,
                  std::vector<glsl::ShadowView>& views, std::vector<glsl::ShadowLight>& lights) {
+  std::vector<Bounds> kept;
+  const std::span<const Bounds> lit = withinRange(light, boxes, desc, kept);
   Writer out{lightIndex, desc.size, views, lights};
   if (layout.parts() == 1) {
-    appendWhole(light, layout, boxes, desc, visible, out);
+    appendWhole(light, layout, lit, desc, visible, out);
     return;
   }
   ShadowMapDesc own = desc;
   own.lightSize = -1;
   for (const glsl::Light& part : partsOf(light, layout, desc))
-    appendWhole(part, layout, boxes, own, visible, out, partWindow(light, part, layout, boxes, desc));
+    appendWhole(part, layout, lit, own, visible, out, partWindow(light, part, layout, lit, desc));
 }
 
 scene::CullVolume cullVolume(const glsl::ShadowView& view) {

@@ -27,13 +27,13 @@ constexpr float kWideKernel = 12;
 LIMN_API LightLayout fitLayout(const glsl::Light& light, std::span<const scene::Bounds> boxes,
                                const ShadowMapDesc& desc);
 
-/// Returns whether the view is that of a face of a cube or half cube in which appendViews() has nothing to
-/// show.
+/// Returns whether the view is one in which appendViews() has nothing to show.
 LIMN_API bool showsNothing(const glsl::ShadowView& view);
 
 /// Appends the views of one light, for each sample of `desc` or each part in turn, with layers numbered from
 /// views.size(), and one ShadowLight per sample or part. With MapFit::view, maps of one view per sample and
-/// the faces of samples' cubes and hemicubes are fitted to `visible`; when it is null, to the boxes.
+/// the faces of samples' cubes and hemicubes are fitted to `visible`, and show nothing where no receiver in
+/// it lies; when it is null, to the boxes.
 LIMN_API void appendViews(const glsl::Light& light, uint32_t lightIndex, const LightLayout& layout,
                           std::span<const scene::Bounds> boxes, const ShadowMapDesc& desc,
                           const VisibleScene* visible, std::vector<glsl::ShadowView>& views,

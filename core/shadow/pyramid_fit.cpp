@@ -63,6 +63,16 @@ MapAxes faceAxes(const MapAxes& a, uint32_t face) {
   }
 }
 
+std::span<const Bounds> boxesAround(const vec3& centre, float reach, std::span<const Bounds> boxes,
+                                    std::vector<Bounds>& kept) {
+  kept.assign(boxes.begin(), boxes.end());
+  for (Bounds& box : kept) {
+    box = {glm::max(box.low, centre - reach), glm::min(box.high, centre + reach)};
+    if (glm::any(glm::greaterThan(box.low, box.high))) box = {};
+  }
+  return kept;
+}
+
 std::array<vec3, 8> corners(const Bounds& box, const vec3& origin, const MapAxes& axes) {
   std::array<vec3, 8> out = boxCorners(box);
   for (vec3& p : out) {

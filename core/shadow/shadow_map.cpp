@@ -30,6 +30,16 @@ std::string_view projectionName(const LightLayout& layout) {
   return layout.faces == glsl::shadow_faces_hemicube ? "hemicube" : "perspective";
 }
 
+/// What --stats says about a light with such views, of those that show something the first.
+ShadowMapStats shownBy(std::span<const glsl::ShadowView> views, ShadowMapStats light) {
+  const auto shown = std::ranges::find_if_not(views, showsNothing);
+  if (shown == views.end()) return light;
+  light.near = shown->near;
+  light.far = shown->far;
+  if (shown->projection == glsl::shadow_perspective) light.halfAngle = std::atan(0.5f / shown->scale);
+  return light;
+}
+
 /// What a description asks of maps of lights that are not cut.
 ShadowMapDesc ofWholeLights(ShadowMapDesc desc) {
   desc.views = 1;
@@ -279,8 +289,11 @@ ShadowMaps ShadowMapService::request(std::span<const uint32_t> lights, const Sha
   made->lights.assign(lights.begin(), lights.end());
   made->desc = desc;
   made->layouts = s.layoutsOf(*made);
-  if (std::ranges::none_of(made->layouts, [&](const LightLayout& l) { return followsView(l, desc); }))
+  if (desc.fit == MapFit::view &&
+      std::ranges::none_of(made->layouts, [&](const LightLayout& l) { return followsView(l, desc); })) {
     made->desc.fit = MapFit::scene;  // until a layout changes: then the graph is built again
+    made->layouts = s.layoutsOf(*made);
+  }
   for (const auto& known : s.requests) {
     if (!known->directions.empty() || !std::ranges::equal(known->lights, lights)) continue;
     if (known->desc == made->desc) return known->maps;
@@ -338,9 +351,9 @@ std::span<const LightLayout> ShadowMapService::layouts(const ShadowMaps& maps) c
   return implementation_->requests.at(maps.index)->layouts;
 }
 
-MinMaxPyramid ShadowMapService::minMaxPyramid(const ShadowMaps& maps) {
-  return implementation_->derived.minMaxPyramid(context().graph, maps.depth,
-                                                implementation_->cacheable(maps));
+MinMaxPyramid ShadowMapService::minMaxPyramid(const ShadowMaps& maps, int boxSide) {
+  return implementation_->derived.minMaxPyramid(context().graph, maps.depth, implementation_->cacheable(maps),
+                                                boxSide);
 }
 
 frame::TextureHandle ShadowMapService::minMaxWindows(const ShadowMaps& maps) {
@@ -428,27 +441,19 @@ std::vector<ShadowMapStats> ShadowMapService::stats() const {
   std::vector<ShadowMapStats> all;
   for (const auto& request : implementation_->requests) {
     if (!request->directions.empty() && !request->views.empty())
-      all.push_back({.light = "parallel light",
-                     .projection = "orthographic",
-                     .layers = request->maps.layers,
-                     .near = request->views.front().near,
-                     .far = request->views.front().far});
+      all.push_back(
+          shownBy(request->views,
+                  {.light = "parallel light", .projection = "orthographic", .layers = request->maps.layers}));
     const size_t stride = request->stride();
     for (size_t i = 0; i < request->lights.size(); ++i) {
       const LightLayout& layout = request->layouts[i];
       const uint32_t first = request->shadowLights[i * stride].first_layer;
       const std::span<const glsl::ShadowView> faces =
           std::span(request->views).subspan(first, glsl::shadow_face_count(layout.faces));
-      const auto shown = std::ranges::find_if_not(faces, showsNothing);
-      const glsl::ShadowView& view = shown != faces.end() ? *shown : faces.front();
-      const bool perspective = layout.projection == glsl::shadow_perspective;
-      all.push_back({.light = implementation_->lightNames[request->lights[i]],
-                     .projection = std::string(projectionName(layout)),
-                     .layers = implementation_->layersOf(implementation_->light(request->lights[i]), layout,
-                                                         request->desc),
-                     .near = view.near,
-                     .far = view.far,
-                     .halfAngle = perspective ? std::atan(0.5f / view.scale) : 0.f});
+      all.push_back(shownBy(faces, {.light = implementation_->lightNames[request->lights[i]],
+                                    .projection = std::string(projectionName(layout)),
+                                    .layers = implementation_->layersOf(
+                                        implementation_->light(request->lights[i]), layout, request->desc)}));
     }
   }
   return all;

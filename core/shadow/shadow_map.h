@@ -35,7 +35,8 @@ enum class Projection {
 /// scene.
 enum class MapFit {
   scene,  ///< everything that a light reaches, independent of the camera
-  view,   ///< what the camera sees of it and what may block its light: redrawn when that changes
+  view,   ///< what the camera sees of it, within a light's range, and what may block its light: redrawn when
+          ///< that changes
 };
 
 struct ShadowMapDesc {
@@ -101,7 +102,7 @@ struct ShadowMapStats {
   std::string light;
   std::string projection;  ///< perspective, orthographic, cube, hemicube
   int layers = 0;
-  float near = 0, far = 0;  ///< metres, of the first layer that shows something
+  float near = 0, far = 0;  ///< metres, of the first layer that shows something; 0: none does
   float halfAngle = 0;      ///< radians, perspective only
 };
 
@@ -135,8 +136,8 @@ class LIMN_API ShadowMapService : public FrameService {
   std::span<const LightLayout> layouts(const ShadowMaps& maps) const;
 
   /// Returns the resource derived from the maps of a request, as do the functions below; each is built once
-  /// per graph, however many techniques request it.
-  MinMaxPyramid minMaxPyramid(const ShadowMaps& maps);
+  /// per graph, however many techniques request it. `boxSide` as for DerivedMaps.
+  MinMaxPyramid minMaxPyramid(const ShadowMaps& maps, int boxSide = 0);
   frame::TextureHandle minMaxWindows(const ShadowMaps& maps);
   frame::TextureHandle nBuffer(const ShadowMaps& maps);
   SummedAreaTable summedAreaTable(const ShadowMaps& maps, const SatDesc& desc);

@@ -160,10 +160,9 @@ bool fitWindow(const MapEye& eye, const VisibleScene& scene, uint32_t skip, cons
   return true;
 }
 
-bool findFaceReceivers(const vec3& origin, const MapAxes& axes, const VisibleScene& scene, uint32_t skip,
+void findFaceReceivers(const vec3& origin, const MapAxes& axes, const VisibleScene& scene, uint32_t skip,
                        uint32_t faces, const vec3& reach, const MapWindow& whole, FaceReceivers& receivers) {
   Convex solid;
-  bool some = false;
   for (uint32_t face = 0; face < faces; ++face) {
     const MapAxes turned = faceAxes(kOwnAxes, face), own = faceAxes(axes, face);
     const vec3 around = inAxes({glm::abs(turned.x), glm::abs(turned.y), glm::abs(turned.z)}, reach);
@@ -178,9 +177,7 @@ bool findFaceReceivers(const vec3& origin, const MapAxes& axes, const VisibleSce
       if (faces == 5 && !solid.empty()) solid.clip(beforeLight(face));
       receivers[face].insert(receivers[face].end(), solid.corners().begin(), solid.corners().end());
     }
-    some = some || !receivers[face].empty();
   }
-  return some;
 }
 
 MapWindow shiftedFaceWindow(std::span<const vec3> receivers, const vec3& offset, const MapWindow& whole) {

@@ -129,6 +129,22 @@ LIMN_FN MicroPatch micro_patch(PatchProjection m, vec2 centre, float cell, float
   vec2 wider = (0.5f * cell * inverse * spread) * abs(vec2(along_y.x, along_x.y));
   found.low = min(first, second) - wider;
   found.high = max(first, second) + wider;
+  if (spread > 0.0f) {
+    // Beside the receiver gaps change as much across a patch as they are wide, and what is linear across would reach past the
+    // receiver's own direction, over all of the light: no box reaches farther than the corners of its patch.
+    vec2 low = middle;
+    vec2 high = middle;
+    for (int i = 0; i < 4; ++i) {
+      float right = (i & 1) == 0 ? -0.5f : 0.5f;
+      float up = (i & 2) == 0 ? -0.5f : 0.5f;
+      vec4 corner = at + cell * (right * per_x + up * per_y);
+      vec2 p = vec2(corner.x, corner.y) / max(corner.z, least);
+      low = min(low, p);
+      high = max(high, p);
+    }
+    found.low = max(found.low, low);
+    found.high = min(found.high, high);
+  }
   return found;
 }
 

@@ -1,12 +1,12 @@
-// One level of the overlapping min-max windows of shadow maps: the first from the maps (BASE 1), each further one from the one
-// before.
+// Levels of the overlapping min-max windows of shadow maps: the first from the maps (BASE 1), further ones from the level before
+// them, COARSER of them (1 to 3) at once: a dispatch of a small level waits longer than it works.
 #include "glsl/shadow/min_max_windows.glsl"
 
 layout(local_size_x = 8, local_size_y = 8) in;
-layout(rg32f) writeonly uniform image2DArray coarser;
 
 #if BASE
 uniform sampler2DArray depth;
+layout(rg32f) writeonly uniform image2DArray level_0;
 
 // Beyond the map's edge its last texels are repeated.
 vec2 value(ivec3 at) {
@@ -24,24 +24,57 @@ vec2 value(ivec3 at) {
   return vec2(min(least.x, least.y), max(greatest.x, greatest.y));
 }
 
-#else
-layout(rg32f) readonly uniform image2DArray finer;
-
-// The last of the finer windows reach the map's edge.
-vec2 value(ivec3 at) {
-  ivec2 last = imageSize(finer).xy - 1;
-  ivec2 first = min(2 * at.xy, last);
-  ivec2 second = min(first + (1 << min_max_overlap), last);
-  vec2 t00 = imageLoad(finer, ivec3(first, at.z)).xy;
-  vec2 t10 = imageLoad(finer, ivec3(second.x, first.y, at.z)).xy;
-  vec2 t01 = imageLoad(finer, ivec3(first.x, second.y, at.z)).xy;
-  vec2 t11 = imageLoad(finer, ivec3(second, at.z)).xy;
-  return vec2(min(min(t00.x, t10.x), min(t01.x, t11.x)), max(max(t00.y, t10.y), max(t01.y, t11.y)));
+void main() {
+  ivec3 at = ivec3(gl_GlobalInvocationID);
+  if (all(lessThan(at, imageSize(level_0)))) imageStore(level_0, at, vec4(value(at), 0.0, 0.0));
 }
+
+#else
+layout(rg32f) readonly uniform image2DArray level_0;
+
+// A window `steps` levels above the finer one: 2^steps of its windows along each axis, one beginning where the other ends. The
+// last of them reach the map's edge. Loops end in their condition: llvmpipe would run the body once more otherwise.
+vec2 value(ivec3 at, int steps) {
+  ivec2 last = imageSize(level_0).xy - 1;
+  ivec2 first = min(at.xy << steps, last);
+  int count = 1 << steps;
+  vec2 bounds = vec2(1.0, 0.0);
+  int y = 0;
+  do {
+    int x = 0;
+    do {
+      ivec2 place = min(first + (ivec2(x, y) << min_max_overlap), last);
+      vec2 z = imageLoad(level_0, ivec3(place, at.z)).xy;
+      bounds = vec2(min(bounds.x, z.x), max(bounds.y, z.y));
+    } while (++x < count);
+  } while (++y < count);
+  return bounds;
+}
+
+// Stores the texel of a level that the invocation has, if it has one. Levels lie below each other, each in whole work groups.
+#define STORE(coarser, steps)                                                                                    \
+  {                                                                                                              \
+    ivec2 size = imageSize(coarser).xy;                                                                          \
+    if (at.y >= 0 && all(lessThan(at.xy, size))) imageStore(coarser, at, vec4(value(at, steps), 0.0, 0.0));      \
+    at.y -= 8 * ((size.y + 7) / 8);                                                                              \
+  }
+
+layout(rg32f) writeonly uniform image2DArray level_1;
+#if COARSER >= 2
+layout(rg32f) writeonly uniform image2DArray level_2;
+#endif
+#if COARSER >= 3
+layout(rg32f) writeonly uniform image2DArray level_3;
 #endif
 
 void main() {
   ivec3 at = ivec3(gl_GlobalInvocationID);
-  if (any(greaterThanEqual(at, imageSize(coarser)))) return;
-  imageStore(coarser, at, vec4(value(at), 0.0, 0.0));
+  STORE(level_1, 1)
+#if COARSER >= 2
+  STORE(level_2, 2)
+#endif
+#if COARSER >= 3
+  STORE(level_3, 3)
+#endif
 }
+#endif

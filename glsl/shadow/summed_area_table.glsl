@@ -195,11 +195,20 @@ struct SatAxis {
   vec3 weights;
 };
 
-// The kernel is cut at one map size (`size` texels) beyond either edge of the map; sat_beyond() adds the rest of it.
-LIMN_FN SatAxis sat_axis(float lo, float hi, int size) {
-  float limit = float(size);
-  float a = clamp(lo, -limit, 2.0f * limit);
-  float b = clamp(hi, a, 2.0f * limit);
+// How far beyond the edges of a map of `size` texels its boxes may reach: by one map, where sums of (D - Z)^2 over so many texels
+// fit 64 bits, else not at all. What lies there is at depth 1, which may be far from D.
+LIMN_FN ivec2 sat_margin(ivec2 size, uint format) {
+  float scale = float(sat_scale(format));
+  float texels = 9.0f * float(size.x) * float(size.y);
+  return texels * scale * scale < 1.8e19f ? size : ivec2(0);
+}
+
+// The kernel is cut `margin` texels beyond either edge of the map, of `size` texels; sat_beyond() adds the rest of it.
+LIMN_FN SatAxis sat_axis(float lo, float hi, int size, int margin) {
+  float least = -float(margin);
+  float most = float(size) + float(margin);
+  float a = clamp(lo, least, most);
+  float b = clamp(hi, a, most);
   int first = int(floor(a));
   int last = int(floor(b));
   SatAxis axis;
@@ -215,10 +224,11 @@ LIMN_FN SatAxis sat_axis(float lo, float hi, int size) {
 
 // Adds what of the kernel lo..hi lies beyond where sat_axis() cuts it: unoccluded, as all outside the map.
 LIMN_FN SatMoments sat_beyond(SatMoments moments, vec2 lo, vec2 hi, ivec2 size, uint receiver, uint format) {
-  vec2 limit = vec2(size);
-  vec2 whole = hi - lo;
-  vec2 cut = clamp(hi, -limit, 2.0f * limit) - clamp(lo, -limit, 2.0f * limit);
-  SAT_PRECISE float texels = whole.x * whole.y - cut.x * cut.y;
+  vec2 margin = vec2(sat_margin(size, format));
+  vec2 least = clamp(lo, -margin, vec2(size) + margin);
+  vec2 most = clamp(hi, -margin, vec2(size) + margin);
+  vec2 outside = (hi - most) + (least - lo);
+  SAT_PRECISE float texels = outside.x * (hi.y - lo.y) + (most.x - least.x) * outside.y;
   float before = float(receiver) - float(sat_scale(format));
   moments.weight += texels;
   moments.first += texels * before;
@@ -257,8 +267,9 @@ SatBox sat_lookup_box(usampler2DArray table, ivec2 lo, ivec2 hi, int layer, uint
 // (E(d - z), E((d - z)^2)) over the kernel lo..hi in texels, whose edges may cut texels and lie outside the map.
 vec2 sat_lookup_moments(usampler2DArray table, vec2 lo, vec2 hi, int layer, float d, uint format) {
   ivec2 size = textureSize(table, 0).xy;
-  SatAxis ax = sat_axis(lo.x, hi.x, size.x);
-  SatAxis ay = sat_axis(lo.y, hi.y, size.y);
+  ivec2 margin = sat_margin(size, format);
+  SatAxis ax = sat_axis(lo.x, hi.x, size.x, margin.x);
+  SatAxis ay = sat_axis(lo.y, hi.y, size.y, margin.y);
   uint receiver = sat_quantise(d, format);
   SatMoments moments = SatMoments(0.0, 0.0, 0.0);
   uvec4 above[4];

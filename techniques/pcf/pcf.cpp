@@ -1,4 +1,6 @@
 // Percentage-closer filtering (Reeves, Salesin, Cook 1987): depth comparisons averaged over a fixed kernel.
+#include <cmath>
+
 #include "core/shadow/visibility_pass.h"
 #include "core/technique/technique.h"
 
@@ -21,12 +23,13 @@ class Pcf : public Technique {
   frame::TextureHandle addPasses(frame::FrameGraph& graph, const TechniqueInputs& inputs,
                                  const TermRequest& request) override {
     shadow::VisibilityPass pass = shadow::visibilityPass(inputs, request, info.name);
+    const float kernel = inputs.parameters.real("kernel");
+    // A kernel touches the texels that its edges cut as well.
+    const int texels = static_cast<int>(std::ceil(kernel)) + 1;
     pass.sampled = {{"shadow_min_max",
-                     inputs.service<shadow::ShadowMapService>().minMaxPyramid(pass.maps).texture,
+                     inputs.service<shadow::ShadowMapService>().minMaxPyramid(pass.maps, texels).texture,
                      "least and greatest depth in a kernel"}};
-    pass.bind = [kernel = inputs.parameters.real("kernel")](frame::PassContext&, gpu::Program& program) {
-      program.set("kernel_width", kernel);
-    };
+    pass.bind = [kernel](frame::PassContext&, gpu::Program& program) { program.set("kernel_width", kernel); };
     return shadow::addVisibilityPass(graph, inputs, request.target, std::move(pass));
   }
 

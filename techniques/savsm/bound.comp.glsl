@@ -17,8 +17,9 @@ uvec4 sums_at(int x, int y, int layer, ivec2 size) { return sat_sums(shadow_tabl
 // sat_lookup_moments() of the kernel low..high.
 vec2 kernel_moments(vec2 low, vec2 high, int layer, float d) {
   ivec2 size = textureSize(shadow_table, 0).xy;
-  SatAxis across = sat_axis(low.x, high.x, size.x);
-  SatAxis down = sat_axis(low.y, high.y, size.y);
+  ivec2 margin = sat_margin(size, table_format);
+  SatAxis across = sat_axis(low.x, high.x, size.x, margin.x);
+  SatAxis down = sat_axis(low.y, high.y, size.y, margin.y);
   ivec4 x = clamp(across.edges, ivec4(0), ivec4(size.x));
   ivec4 y = clamp(down.edges, ivec4(0), ivec4(size.y));
   ivec3 columns = x.yzw - x.xyz;

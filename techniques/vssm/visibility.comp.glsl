@@ -161,7 +161,7 @@ float light_visibility(ShadowCursor cursor, VisibilityQuery q, ivec2 pixel) {
   bool narrow = false;
   float v = search.umbra && !search.lit ? 0.0 : 1.0;
   float gap = search.gap;
-  // Steps 2 to 4: first the distance of the blockers, then their share of the penumbra kernel, which is taken anew where
+  // Steps 2 to 4: first the distance of the blockers, then their share of the penumbra kernel, which is taken again where
   // the blockers in it turn out to be much nearer than those that gave its size.
   int pass = 0;
   do {

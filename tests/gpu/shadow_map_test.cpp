@@ -339,6 +339,38 @@ TEST_F(ShadowMapTest, MapsThatDoNotFollowTheViewAreSharedHoweverTheyAreFitted) {
   gpuScene.forget();
 }
 
+/// Half cubes do not follow the view. What the light is cut by is then all of the scene, from the request on:
+/// by what lies within its range alone it would be cut, and the graph built again in every frame.
+TEST_F(ShadowMapTest, LightsWithARangeAreCutTheSameInEveryFrame) {
+  scene::Scene scene;
+  addMesh(scene, floorPrimitive(20, addMaterial(scene)));
+  scene::Pose pose;
+  addInstance(scene, pose, 0);
+  addInstance(scene, pose, 0, at(60, 30, 0));
+  addLight(pose, rectangleLight({0, 1, 0}, {0, -1, 0}, 0.5f, 0.5f));
+  pose.lights[0].range = 6;
+  const shadow::ShadowMapDesc desc{.size = 64, .views = 0, .fit = shadow::MapFit::view};
+  scene::GpuScene gpuScene(device(), scene);
+  const scene::CameraPose camera = scene::frameBounds(pose.bounds);
+  gpuScene.update(pose, camera, {64, 64}, 0);
+  FrameServices services;
+  auto& service = services.add<shadow::ShadowMapService>(device(), gpuScene);
+  frame::ResourcePool pool(device());
+  frame::FrameGraph graph;
+  const auto building = services.begin(graph, gpuScene.import(graph), pose);
+  const std::vector<uint32_t> lights{0};
+  const shadow::ShadowMaps maps = service.request(lights, desc);
+  EXPECT_EQ(service.layersOf(0, desc), 20);
+  EXPECT_EQ(maps.layers, 5);
+  graph.output(maps.depth);
+  graph.prepare(device(), shaders(), pool);
+  graph.execute();
+  pose.lights[0].position.x += 0.01f;
+  gpuScene.update(pose, camera, {64, 64}, 1);
+  EXPECT_FALSE(services.update(graph, pose));
+  gpuScene.forget();
+}
+
 TEST_F(ShadowMapTest, MapsFittedToTheViewFollowTheCamera) {
   scene::Scene scene;
   addMesh(scene, floorPrimitive(20, addMaterial(scene)));

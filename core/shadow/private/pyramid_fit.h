@@ -6,6 +6,7 @@
 #include <glm/glm.hpp>
 #include <limits>
 #include <span>
+#include <vector>
 
 #include "core/scene/scene.h"
 #include "core/shadow/private/window_fit.h"
@@ -19,6 +20,11 @@ struct DepthRange {
 
 /// Returns the axes of a face of shadow_face() (glsl/shadow/shadow_view.glsl) about those of face 0.
 MapAxes faceAxes(const MapAxes& axes, uint32_t face);
+
+/// Returns what of the boxes lies in the cube whose sides are `reach` metres from `centre`; `kept` holds it.
+std::span<const scene::Bounds> boxesAround(const glm::vec3& centre, float reach,
+                                           std::span<const scene::Bounds> boxes,
+                                           std::vector<scene::Bounds>& kept);
 
 /// Returns the corners of a box relative to `origin`, in the axes, in the order of boxCorners().
 std::array<glm::vec3, 8> corners(const scene::Bounds& box, const glm::vec3& origin, const MapAxes& axes);

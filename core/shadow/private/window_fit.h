@@ -53,8 +53,8 @@ using FaceReceivers = std::array<std::vector<glm::vec3>, 6>;
 
 /// Finds the receivers that the camera sees in each of the first `faces` faces of shadow_face() about any
 /// point of the light at most `reach` from `origin` along each of the axes. Of half cubes (faces: 5) only
-/// what lies before the light counts. Depths are up to that of `whole`. Returns false when there are none.
-LIMN_API bool findFaceReceivers(const glm::vec3& origin, const MapAxes& axes, const VisibleScene& scene,
+/// what lies before the light counts. Depths are up to that of `whole`.
+LIMN_API void findFaceReceivers(const glm::vec3& origin, const MapAxes& axes, const VisibleScene& scene,
                                 uint32_t skip, uint32_t faces, const glm::vec3& reach, const MapWindow& whole,
                                 FaceReceivers& receivers);
 

@@ -62,6 +62,11 @@ struct Setting {
         receiver(shadow_receiver(view, p, vec3(0, 1, 0), seen.axis, 1)),
         projection(patch_projection(view, receiver, seen, p, 1)) {}
 
+  /// Metres from the receiver along the light's axis to a point of the map at depth z.
+  float gap(vec2 texel, float z) const {
+    const vec3 b = shadow_unproject_local(view, texel / float(kMapTexels), z);
+    return -dot(seen.axis, view.origin + shadow_world_offset(view, b) - p);
+  }
   /// Where the ray through a point of the map at depth z meets the light's box, in the projection's order.
   vec2 point(vec2 texel, float z) const {
     const vec3 b = shadow_unproject_local(view, texel / float(kMapTexels), z);
@@ -122,6 +127,42 @@ TEST(MicroPatches, EndsOfAPatchAreThoseOfItsMiddleLines) {
     }
     EXPECT_GT(compared, 100);
   }
+}
+
+/// Also beside the receiver, where gaps change much across a patch: a box that reached farther there would
+/// cover lights that the patch is far aside of.
+TEST(MicroPatches, BoxesHoldMiddleLinesAndReachNoFartherThanCorners) {
+  std::mt19937 random(4);
+  std::uniform_real_distribution<float> uniform(0, 1);
+  int beside = 0;
+  for (const Setting& s : settings()) {
+    for (int i = 0; i < 10000; ++i) {
+      const vec2 centre(std::floor(kMapTexels * uniform(random)) + 0.5f,
+                        std::floor(kMapTexels * uniform(random)) + 0.5f);
+      const float z = 0.05f + 7 * uniform(random);
+      vec2 low(3e38f), high(-3e38f);
+      float least = 3e38f, most = 0;
+      for (int k = 0; k < 4; ++k) {
+        const vec2 corner = centre + vec2(k % 2, k / 2) - 0.5f;
+        low = min(low, s.point(corner, z));
+        high = max(high, s.point(corner, z));
+        least = std::min(least, s.gap(corner, z));
+        most = std::max(most, s.gap(corner, z));
+      }
+      const MicroPatch patch = micro_patch(s.projection, centre, 1, z, 1);
+      if (!patch.blocks || least < 0.02f) continue;
+      if (most > 2 * least) ++beside;
+      const MicroPatch lines = micro_patch(s.projection, centre, 1, z, 0);
+      for (int axis = 0; axis < 2; ++axis) {
+        const float rounding = 5e-3f * std::max({std::abs(low[axis]), std::abs(high[axis]), 1.f});
+        EXPECT_GE(patch.low[axis], low[axis] - rounding) << i;
+        EXPECT_LE(patch.high[axis], high[axis] + rounding) << i;
+        EXPECT_LE(patch.low[axis], lines.low[axis] + rounding) << i;
+        EXPECT_GE(patch.high[axis], lines.high[axis] - rounding) << i;
+      }
+    }
+  }
+  EXPECT_GT(beside, 50);
 }
 
 /// The texels of one plane cover the light once, whichever way the map is turned against it.

@@ -111,7 +111,8 @@ struct Table {
                           {width, height}, format);
   }
   vec2 moments(vec2 lo, vec2 hi, float d) const {
-    const SatAxis x = sat_axis(lo.x, hi.x, width), y = sat_axis(lo.y, hi.y, height);
+    const ivec2 margin = sat_margin({width, height}, format);
+    const SatAxis x = sat_axis(lo.x, hi.x, width, margin.x), y = sat_axis(lo.y, hi.y, height, margin.y);
     const uint receiver = sat_quantise(d, format);
     SatMoments m{0, 0, 0};
     for (int j = 0; j < 3; ++j) {
@@ -212,6 +213,27 @@ TEST(SummedAreaTable, OutsideTheMapCountsAsUnoccluded) {
   }
   EXPECT_NEAR(table.moments({-1e9f, -1e9f}, {1e9f, 1e9f}, 1).x, 64 / 4e18, 1e-18);
   EXPECT_EQ(wide(table.box({-8, -8}, {16, 16}).z), uint64_t{512} * 65535);
+}
+
+/// The largest map that 24 bits hold, in kernels of up to three maps by three: what lies outside is so far
+/// behind the receiver that squares over all of it exceed 64 bits.
+TEST(SummedAreaTable, KernelsWiderThanTheLargestMapDoNotOverflow) {
+  constexpr int side = 256;
+  const uint format = sat_format(24, 2, 1);
+  ASSERT_EQ(sat_largest_box(format), uint{side * side});
+  const auto z = randomDepths(size_t{side} * side, 0.25f, 0.2f, 1);
+  const Table table(format, side, side, z);
+  for (const auto& [lo, hi] : {std::pair(vec2(-256), vec2(512)),
+                               {vec2(-100.3f, 7), vec2(300, 480.6f)},
+                               {vec2(20, -250.5f), vec2(230.25f, 256)},
+                               {vec2(-700), vec2(900)}}) {
+    for (const float d : {0.05f, 0.3f, 0.9f}) {
+      const vec2 m = table.moments(lo, hi, d);
+      const dvec2 exact = momentsInDouble(table, z, lo, hi, d);
+      EXPECT_NEAR(m.x, exact.x, 2e-5 * std::sqrt(exact.y)) << lo.x << ", depth " << d;
+      EXPECT_NEAR(m.y, exact.y, 4e-5 * exact.y) << lo.x << ", depth " << d;
+    }
+  }
 }
 
 TEST(SummedAreaTable, OfAConstantMapTheVarianceIsZero) {

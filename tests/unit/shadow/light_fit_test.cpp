@@ -6,6 +6,7 @@
 #include <cmath>
 #include <vector>
 
+#include "glsl/light/light_view.glsl"
 #include "tests/support/test_scenes.h"
 
 namespace limn::shadow {
@@ -54,6 +55,35 @@ TEST(LightFit, MapsOfFewTexelsAreHardlyWiderThanWhatTheyShow) {
     const double exact = width(1 << 20);
     for (const int size : {1, 2, 3, 8, 15}) EXPECT_NEAR(width(size) / exact, 1.25, 1e-4) << size;
     for (const int size : {16, 256}) EXPECT_NEAR(width(size) / exact, 1 + 4.0 / size, 1e-4) << size;
+  }
+}
+
+/// However large the scene is: near planes are a part of the farthest that is lit.
+TEST(LightFit, MapsFittedToTheViewEndWithTheRangeOfALight) {
+  const std::vector<scene::Bounds> boxes{{vec3(-3, 0, -3), vec3(3, 0, 3)},
+                                         {vec3(100, -50, 100), vec3(1e5f, 5e4f, 1e5f)}};
+  glsl::Light lights[] = {test::rectangleLight({0, 2, 0}, {0, -1, 0}, 0.3f, 0.3f),
+                          test::spotLight({0, 2, 0}, {0, -1, 0}, 0.9f), test::pointLight({0, 2, 0})};
+  const ShadowMapDesc desc{.size = 64, .fit = MapFit::view};
+  for (glsl::Light& light : lights) {
+    SCOPED_TRACE(light.type);
+    light.range = 3;
+    std::vector<glsl::ShadowView> views;
+    std::vector<glsl::ShadowLight> maps;
+    appendViews(light, 0, fitLayout(light, boxes, desc), boxes, desc, nullptr, views, maps);
+    ASSERT_EQ(views.size(), light.type == glsl::light_point ? 6u : 1u);
+    int lit = 0;
+    for (int i = 0; i < 100; ++i) {
+      const vec3 p(0.5f * static_cast<float>(i % 10) - 2.25f, 0, 0.5f * static_cast<float>(i / 10) - 2.25f);
+      if (glsl::light_view(light, p, {0, 1, 0}, -1).masked) continue;
+      ++lit;
+      const glsl::ShadowView& view = views[glsl::shadow_face(maps[0].faces, views[0], p)];
+      const glsl::ShadowPoint q = glsl::shadow_project(view, p);
+      EXPECT_TRUE(glsl::shadow_inside(q)) << i;
+      EXPECT_GE(q.depth, view.near) << i;
+      EXPECT_LE(q.depth, view.far) << i;
+    }
+    EXPECT_GT(lit, 20);
   }
 }
 

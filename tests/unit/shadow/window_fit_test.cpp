@@ -375,6 +375,45 @@ TEST(WindowFitOf, FacesStayWhatTheyAreWhileTheCameraMovesLittle) {
   EXPECT_LE(changes, 15);
 }
 
+/// Of a light that shines only where the camera does not look, nobody looks into the maps.
+TEST(WindowFitOf, MapsOfLightsOnNothingThatIsSeenStayEmpty) {
+  const Cloud cloud(1);
+  VisibleScene visible(cloud.scene);
+  const scene::CameraPose ahead = scene::lookAt({0, 1.2f, 3.5f}, {0, 0.2f, 8}, 0.5f),
+                          up = scene::lookAt({0, 5, 0}, {0.1f, 60, 1}, 0.5f);
+  const auto expectEmpty = [&](const glsl::Light& light, const scene::CameraPose& camera,
+                               const ShadowMapDesc& desc) {
+    visible.update(cloud.pose, cloud.boxes, camera, 1.3f);
+    EXPECT_EQ(visible.visible().empty(), &camera == &up);
+    const Fitted cut = fit(cloud, light, desc, &visible);
+    for (const glsl::ShadowView& view : cut.views) {
+      EXPECT_TRUE(showsNothing(view)) << view.layer;
+      for (const auto& triangle : cloud.triangles) {
+        for (const vec3& p : triangle) {
+          const glsl::ShadowPoint q = glsl::shadow_project(view, p);
+          EXPECT_FALSE(glsl::shadow_inside(q) && q.depth >= view.near && q.depth <= view.far);
+        }
+      }
+    }
+    ShadowMapDesc ofScene = desc;
+    ofScene.fit = MapFit::scene;
+    const Fitted whole = fit(cloud, light, ofScene, &visible);
+    for (const glsl::ShadowView& view : whole.views) EXPECT_FALSE(showsNothing(view)) << view.layer;
+  };
+  const std::vector<vec2> points{{0.5f, 0.5f}, {0.3f, 0.6f}};
+  const glsl::Light rectangle = rectangleLight({-2.5f, 6.5f, 1}, {0.3f, -1, -0.1f}, 0.8f, 0.6f),
+                    spot = spotLight({0, 3.8f, -3}, {0, -1, 0}, 0.3f),
+                    sun = directionalLight({0.3f, -1, 0.2f}, 0.2f);
+  for (const glsl::Light& light : {rectangle, spot, sun}) {
+    const scene::CameraPose& camera = light.type == glsl::light_spot ? ahead : up;
+    expectEmpty(light, camera, {.size = 64, .fit = MapFit::view});
+    expectEmpty(light, camera, {.size = 64, .samples = points, .fit = MapFit::view});
+    expectEmpty(light, camera, {.size = 64, .views = 2, .fit = MapFit::view});
+  }
+  for (int kind = 0; kind < 3; ++kind)
+    expectEmpty(lightOfFaces(kind), up, {.size = 64, .samples = points, .fit = MapFit::view});
+}
+
 TEST(VisibleSceneOf, FollowsWhatMovedAndIsLeftAsItIsOtherwise) {
   Cloud cloud(1);
   scene::CameraPose camera = scene::lookAt({0, 1.2f, 3.5f}, {0, 0.2f, 0}, 0.5f);
