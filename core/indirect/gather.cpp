@@ -205,6 +205,7 @@ void Gather::addShadePass(ShadePass shade) {
   const bool splitting = gbuffer_.depth != inputs_.gbuffer.depth;
   shade.program.defines["SPLIT"] = splitting ? "1" : "0";
   shade.program.defines["GATHER_EDGES"] = "0";
+  shade.program.defines["GATHER_COLOURLESS"] = blurred_ && specular_ ? "1" : "0";
   shade.program.defines["ACCUMULATE"] = accumulate ? "1" : "0";
   const auto program = pass.program(shade.program);
   // Without a blur a pixel keeps its part of the lights, and gets another wherever the camera moves.
@@ -240,6 +241,7 @@ TextureHandle Gather::addEdgePass(ShadePass shade, TextureHandle rows, TextureHa
                                           "gathered", "edges by all virtual lights");
   shade.program.defines["SPLIT"] = "0";
   shade.program.defines["GATHER_EDGES"] = "1";
+  shade.program.defines["GATHER_COLOURLESS"] = "0";
   shade.program.defines["ACCUMULATE"] = accumulate ? "1" : "0";
   const auto program = pass.program(shade.program);
   pass.execute([program, uniforms = shadingUniforms(shade), edges = settings_.edges,
@@ -269,18 +271,26 @@ TextureHandle Gather::merge(TextureHandle shaded) {
   return merged;
 }
 
+/// Declares one direction of a blur. `last`: the one that completes the blur of interleaved pixels, after
+/// which the residual is folded in where the bound falls, and the specular part has its colour again.
 TextureHandle Gather::blur(std::string_view name, TextureHandle from, int width, int stride, int firstPart,
-                           int endPart, bool vertical, bool fold) {
+                           int endPart, bool vertical, bool last) {
+  const bool fold = last && falling_, colours = last && specular_;
   frame::PassBuilder pass = graph_.addPass(name, technique_);
   pass.read(inputs_.handles.frame, Access::uniformBuffer, "FrameBlock", "camera, scene extent")
-      .read(inputs_.gbuffer.depth, Access::sampled, kGBufferNames.depth, "positions")
-      .read(inputs_.gbuffer.normal, Access::sampled, kGBufferNames.normal, "normals")
       .read(from, Access::sampled, "gathered", "what is averaged");
+  if (colours) {
+    readSurfaces(pass, inputs_.gbuffer);
+  } else {
+    pass.read(inputs_.gbuffer.depth, Access::sampled, kGBufferNames.depth, "positions")
+        .read(inputs_.gbuffer.normal, Access::sampled, kGBufferNames.normal, "normals");
+  }
   const TextureHandle to = pass.write(screen(name, inputs_.size, fold ? parts() - 1 : parts()),
                                       Access::imageStore, "blurred", "sums over like neighbours");
   gpu::ProgramDesc description{.files = {"glsl/indirect/blur.comp.glsl"},
                                .defines = {{"VERTICAL", vertical ? "1" : "0"},
                                            {"FOLD", fold ? "1" : "0"},
+                                           {"COLOURS", colours ? "1" : "0"},
                                            {"PARTS_FIRST", std::to_string(firstPart)},
                                            {"PARTS_END", std::to_string(endPart)}}};
   defineParts(description);
@@ -304,7 +314,7 @@ TextureHandle Gather::finish(TextureHandle target) {
     const TextureHandle interleaved = gathered;
     const int width = settings_.block;
     const TextureHandle rows = blur("blur", interleaved, width, 1, 0, parts(), false, false);
-    gathered = blur("blur", rows, width, 1, 0, parts(), true, falling_);
+    gathered = blur("blur", rows, width, 1, 0, parts(), true, true);
     if (edges_) {
       const TextureHandle columns = blur("blur", interleaved, width, 1, 0, parts(), true, false);
       gathered = shadeEdges(rows, columns, gathered);

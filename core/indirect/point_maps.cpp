@@ -74,6 +74,11 @@ frame::TextureHandle fillHoles(frame::FrameGraph& graph, const PointMapDesc& des
 
 }  // namespace
 
+int pointMapBatch(const gpu::Device& device, int size) {
+  const int64_t fitting = device.limits().maxStorageBlockBytes / (int64_t{sizeof(float)} * size * size);
+  return static_cast<int>(std::clamp<int64_t>(fitting, 1, paraboloidBatch(device, size)));
+}
+
 PointMapPass::PointMapPass(gpu::Device& device, const scene::Scene& scene, const scene::Pose& pose,
                            int points, int windows)
     : points_(device, scene, pose, points * windows) {}
@@ -103,8 +108,7 @@ void PointMapPass::place(frame::FrameGraph& graph, const SceneHandles& handles, 
 
 ParaboloidMaps PointMapPass::add(frame::FrameGraph& graph, const gpu::Device& device, BufferHandle views,
                                  const PointMapDesc& desc) {
-  const int64_t fitting = device.limits().maxStorageBlockBytes / (int64_t{4} * desc.size * desc.size);
-  const int most = static_cast<int>(std::min<int64_t>(paraboloidBatch(device, desc.size), fitting));
+  const int most = pointMapBatch(device, desc.size);
   if (desc.count < 1 || desc.count > most)
     throw UsageError(fmt::format("{} maps of {} x {} texels filled from points at once: accepted are 1 to {}",
                                  desc.count, desc.size, desc.size, most));

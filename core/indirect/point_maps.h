@@ -29,6 +29,10 @@ struct PointMapDesc {
   bool cacheable = true;
 };
 
+/// Returns how many maps of `size` texels per side fit a batch (paraboloidBatch()) and the storage block that
+/// points are splatted into.
+LIMN_API int pointMapBatch(const gpu::Device& device, int size);
+
 /// Fills sets of maps from one choice of points. Must outlive the graph.
 class LIMN_API PointMapPass {
  public:
@@ -40,7 +44,7 @@ class LIMN_API PointMapPass {
   /// Declares the pass that places the points where the surfaces are now; before the first add().
   void place(frame::FrameGraph& graph, const SceneHandles& handles, std::string_view technique);
   /// Declares the passes that fill maps as ParaboloidMapPass::add() draws them. Throws UsageError for more
-  /// maps than a batch or a storage block holds.
+  /// maps than pointMapBatch().
   ParaboloidMaps add(frame::FrameGraph& graph, const gpu::Device& device, frame::BufferHandle views,
                      const PointMapDesc& desc);
 

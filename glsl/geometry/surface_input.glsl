@@ -24,14 +24,15 @@ vec4 texel(sampler2D image, vec2 uv_dx, vec2 uv_dy) {
   return textureLod(image, surface_uv, texture_level(uv_dx, uv_dy, vec2(textureSize(image, 0))));
 }
 
-// Linear base colour; a: coverage.
+// Linear base colour; a: coverage. That of a model is its own: vertices and textures decide on its coverage alone.
 vec4 surface_base(vec2 uv_dx, vec2 uv_dy) {
   vec4 base = material.base_colour;
 #if COLOURS
   base *= surface_colour;
 #endif
   if ((textures & material_has_base_colour_texture) != 0u) base *= texel(base_colour_texture, uv_dx, uv_dy);
-  return base;
+  bool own = (material.flags & material_has_model) != 0u;
+  return vec4(own ? material.base_colour.rgb : base.rgb, base.a);
 }
 
 #if MASKED

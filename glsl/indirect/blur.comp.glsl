@@ -9,8 +9,11 @@
 // FOLD 1: the residual goes to the diffuse part, as far as the pattern's places count. A pixel is thus lit as with a bound of the
 // inverse square that falls with the root of the number of lights of which it is the mean: 1 / bound^2 is linear in it.
 //
+// COLOURS 1: the specular part is per unit of specular reflectance (GATHER_COLOURLESS), by which it is multiplied here.
+//
 // PARTS_FIRST, PARTS_END: the parts blurred. VERTICAL 1: along columns.
 #include "glsl/surface/gbuffer_input.glsl"
+#include "glsl/surface/reflectance.glsl"
 #include "glsl/indirect/gather_parts.glsl"
 
 layout(local_size_x = 8, local_size_y = 8) in;
@@ -72,6 +75,12 @@ void main() {
   }
 #if FOLD
   sums[gather_part_diffuse].rgb += sums[gather_part_diffuse].a / float(width) * sums[gather_part_residual].rgb;
+#endif
+#if COLOURS
+  GBufferSurface surface = pixel_surface(pixel);
+  sums[gather_part_specular].rgb *= specular_reflectance(surface_brdf(surface.base_colour, surface.metallic, surface.roughness,
+                                                                      surface.specular_factor, surface.specular_colour,
+                                                                      surface.ior));
 #endif
   for (int part = PARTS_FIRST; part < PARTS_END - FOLD; ++part)
     imageStore(blurred, ivec3(pixel, part), sums[part - PARTS_FIRST] / float(width));

@@ -9,6 +9,9 @@
 //
 // GATHER_GLOSSY 1: the specular part has a bound of its own, wider than that of a pixel that is the mean of several frames.
 //
+// GATHER_COLOURLESS 1: the specular part is left over the surface's specular reflectance, which the blur multiplies it by in the
+// end: neither textures nor the edges of materials are blurred with it.
+//
 // llvmpipe leaves all loops of a thread after 65,535 steps in all: there a pass takes batch_count of the lights that a thread has.
 //
 // A thread shades four pixels of its sub-buffer, so that a light is loaded once for them: one in each quarter of what its work
@@ -29,6 +32,7 @@
 #ifndef LIMN_GATHER_MAIN_GLSL
 #define LIMN_GATHER_MAIN_GLSL
 #include "glsl/surface/brdf_view.glsl"
+#include "glsl/surface/reflectance.glsl"
 #include "glsl/surface/surface_response.glsl"
 #include "glsl/indirect/gather.glsl"
 #include "glsl/indirect/gather_parts.glsl"
@@ -181,10 +185,9 @@ void gather_from(VirtualPointLight light, uint pixel, Receiver r, float nearest2
   parts.diffuse = inverse_pi * entry_share(r.material.model, dot(r.normal, l)) / r.material.model.kd.x;
   parts.specular = vec3(0.0);
 #elif MATERIAL_MODELS
-  if (has_model(r.material)) {  // all of it: what is left of the surface without its specular part is black
-    parts.diffuse = 0.0;
+  // All of it: what is left of the surface without its specular part is black, and has a diffuse part for what lies around it.
+  if (has_model(r.material))
     parts.specular = surface_response(r.material, r.normal, r.to_viewer, l) / max(dot(r.normal, l), 1e-6);
-  }
 #endif
 #if GATHER_GLOSSY
   float glossy = share * GATHER_REBOUND(sight.d2, nearest2, r.glossy_nearest2);
@@ -320,7 +323,7 @@ void store_part(ivec3 at, vec4 value) {
   imageStore(gathered, at, value);
 }
 
-void store(GatherPixel p, Gathered sum) {
+void store(GatherPixel p, Receiver r, Gathered sum) {
 #if GATHER_EDGES
   const float part_of_all = 1.0;
   float scale = inverse_pi;
@@ -340,7 +343,15 @@ void store(GatherPixel p, Gathered sum) {
 #endif
   store_part(ivec3(p.texel, gather_part_diffuse), vec4(diffuse * sum.diffuse, weight));
 #if GATHER_SPECULAR
-  store_part(ivec3(p.texel, gather_part_specular), vec4(scale * sum.specular, weight));
+  vec3 specular = scale * sum.specular;
+  float specular_weight = weight;
+#if GATHER_COLOURLESS
+  vec3 reflectance = r.brdf.f0 + mean_schlick_weight * r.brdf.f_rise;  // specular_reflectance()
+  specular /= max(reflectance, vec3(1e-30));
+  // Surfaces without a specular part have no share in that of others around them.
+  if (!(reflectance.x > 0.0)) specular_weight = 0.0;
+#endif
+  store_part(ivec3(p.texel, gather_part_specular), vec4(specular, specular_weight));
 #endif
 #if GATHER_RESIDUAL && !(GATHER_EDGES && GATHER_FALLING)
   store_part(ivec3(p.texel, gather_part_residual), vec4(diffuse * sum.residual, weight));
@@ -375,7 +386,7 @@ void main() {
   GatherPixel p = gather_pixel(ivec2(packed_pixel & 0xffffu, packed_pixel >> 16), r);
   Gathered sum = Gathered(vec3(0.0), vec3(0.0), vec3(0.0));
   gather_lights(batch_first, min(batch_first + batch_count, vpl_count), r, sum);
-  store(p, sum);
+  store(p, r, sum);
 }
 #else
 void main() {
@@ -414,11 +425,11 @@ void main() {
     } while (++i < end);
 #endif
   }
-  store(p00, sum00);
+  store(p00, r00, sum00);
 #if GATHER_PIXELS == 4
-  store(p10, sum10);
-  store(p01, sum01);
-  store(p11, sum11);
+  store(p10, r10, sum10);
+  store(p01, r01, sum01);
+  store(p11, r11, sum11);
 #endif
 }
 

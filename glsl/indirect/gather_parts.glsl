@@ -1,5 +1,6 @@
 // What the passes of indirect light pass on: an array of screens (RGBA32F) with a layer for each part of the light.
-// rgb / a is the value; a is 0 where nothing can be lit. GATHER_SPECULAR, GATHER_RESIDUAL: whether these parts exist.
+// rgb / a is the value; a is 0 where nothing can be lit, and until it is blurred that of the specular part is 0 where the surface
+// has none. GATHER_SPECULAR, GATHER_RESIDUAL: whether these parts exist.
 #ifndef LIMN_GATHER_PARTS_GLSL
 #define LIMN_GATHER_PARTS_GLSL
 

@@ -25,7 +25,7 @@ vec3 diffuse_albedo(vec3 base, vec2 metal_rough, float cosine) {
 #if LAMBERTIAN
   return base;
 #else
-  // A model sends back all that it reflects: of the metal next to it (setModel() in core/scene_io), that is its albedo.
+  // A model sends back all that it reflects: of the metal next to it (setModel() in core/scene), that is its albedo.
   if ((material.flags & material_has_model) != 0u) return mix(base, vec3(1.0), mean_schlick_weight);
   vec3 colour = material.specular_factor > 0.0 ? material.specular_colour / material.specular_factor : vec3(1.0);
   SurfaceBrdf s = surface_brdf(base, metal_rough.x, metal_rough.y, material.specular_factor, colour, material.ior);

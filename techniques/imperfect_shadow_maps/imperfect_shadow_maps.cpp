@@ -16,9 +16,11 @@ using namespace limn;
 constexpr int kWindows = 16;  // the pool of points holds as many times what one map takes
 
 constexpr auto kParameters = indirect::gatherParameters(std::to_array<Parameter>({
-    integer("map_size", 64, {8, 64}, "texels", "Width and height of each virtual light's map"),
+    integer("map_size", 64, {8, 512}, "texels", "Width and height of each virtual light's map")
+        .quality()
+        .logScale(),
     integer("points", 2048, {64, 65536}, "points", "Splatted into each map").quality().logScale(),
-    real("splat", 4, {0.5, 16}, "texels", "Radius of the largest splat"),
+    real("splat", 4, {0.5, 64}, "texels", "Radius of the largest splat"),
     integer("fill_levels", 0, {0, 6}, "levels", "Holes up to 2 to this power texels wide are closed"),
     real("fill_depth", 0.05, {0, 1}, "scene extents",
          "Depths farther apart than this are not averaged when holes are closed"),
@@ -61,7 +63,7 @@ class ImperfectShadowMaps : public Technique {
     const indirect::VirtualLights lights = inputs.service<indirect::VirtualLightService>().request(
         request.lights, indirect::virtualLightDesc(p));
     const int size = p.integer("map_size");
-    const int batch = std::min(lights.count, indirect::paraboloidBatch(inputs.gpuScene.device(), size));
+    const int batch = std::min(lights.count, indirect::pointMapBatch(inputs.gpuScene.device(), size));
     indirect::LightMaps& maps = maps_.get(request.lights, [&] {
       return indirect::LightMaps{
           .views = indirect::addLightViews(graph, inputs, lights,

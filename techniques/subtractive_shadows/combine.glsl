@@ -35,7 +35,7 @@ ReflectedParts surface_colours(SampledPixel p) {
 #if MATERIAL_MODELS
   if (has_model(p.material)) s = nearest_brdf(p.material);
 #endif
-  return ReflectedParts(s.diffuse, mix(s.f0, vec3(s.f90), mean_schlick_weight));
+  return ReflectedParts(s.diffuse, specular_reflectance(s));
 #else
   return ReflectedParts(vec3(1.0), vec3(1.0));
 #endif

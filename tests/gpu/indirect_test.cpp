@@ -311,6 +311,22 @@ TEST_F(IndirectPictureTest, BatchesOfMapsGiveTheSamePicture) {
   }
 }
 
+/// 128 MiB, the storage block that OpenGL promises, hold 128 maps of 512 texels. Splats that grow by less
+/// than the maps leave holes: there is more light than behind those of smaller maps, and less than without
+/// any.
+TEST_F(IndirectPictureTest, MapsOfPointsComeInAsManyBatchesAsTheyNeed) {
+  const scene::Scene scene = asset("cornell_box");
+  render::Renderer renderer(device(), scene);
+  const auto light = [&](const char* size, const char* splat) {
+    return mean(indirect(renderer, "imperfect_shadow_maps",
+                         {{"vpls", "130"}, {"map_size", size}, {"points", "64"}, {"splat", splat}}));
+  };
+  const double open = mean(indirect(renderer, "reflective_shadow_map", {{"vpls", "130"}}));
+  const double large = light("512", "16");
+  EXPECT_LT(large, 0.999 * open);
+  EXPECT_GT(large, light("64", "4"));
+}
+
 TEST_F(IndirectPictureTest, NothingIsRedrawnWhileOnlyTheCameraMoves) {
   for (const float sigma : {0.f, 0.5f}) {
     scene::Scene scene = asset("cornell_box");

@@ -4,7 +4,9 @@
 #include <numeric>
 
 #include "core/indirect/virtual_lights.h"
+#include "core/scene/material_model.h"
 #include "glsl/light/rectangle_light.glsl"
+#include "glsl/materials/model.glsl"
 #include "glsl/numeric/sampling.glsl"
 #include "glsl/surface/brdf.glsl"
 #include "tests/gpu/gl_test.h"
@@ -398,6 +400,24 @@ TEST_F(VirtualLightTest, AlbedoIsTheDiffusePartOfTheBrdf) {
   weight /= side * side;
   expectFlux(sample(scene, pose, {.count = 128}), s.diffuse * 16.f * towards.y * static_cast<float>(weight),
              0.01f);
+}
+
+/// Vertices have colours for metallic-roughness; a model's are its own.
+TEST_F(VirtualLightTest, AModelReflectsItsAlbedoWhateverColoursVerticesHave) {
+  glsl::MaterialModel matte{};
+  matte.kind = glsl::model_phong;
+  matte.exponent = 1;
+  matte.kd = colour;
+  scene::Scene scene;
+  scene::Material material = lambert(vec3(1));
+  scene::setModel(material, matte);
+  scene::Primitive floor = floorPrimitive(2, addMaterial(scene, material));
+  floor.colours.assign(floor.positions.size(), glm::vec4(0.1f, 0.2f, 0.3f, 1));
+  addMesh(scene, floor);
+  scene::Pose pose;
+  addInstance(scene, pose, 0);
+  addLight(pose, directionalLight({0, -1, 0}, 0));
+  expectFlux(sample(scene, pose, {.count = 128}), colour * 16.f, 0.01f);
 }
 
 }  // namespace

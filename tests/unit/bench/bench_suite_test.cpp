@@ -257,6 +257,12 @@ TEST(BenchSuite, ChapterSixAsksEveryTechniqueWhereVisibilityMatters) {
   using Parameters = std::vector<std::pair<std::string, std::string>>;
   const std::pair<std::string, Parameters> expected[] = {
       {"clustered_visibility", {{"clustered_visibility.vals", "30"}}},
+      {"clustered_visibility",  // as published
+       {{"clustered_visibility.blur_plane", "1"},
+        {"clustered_visibility.contact_texels", "0"},
+        {"clustered_visibility.interleaving", "split"},
+        {"clustered_visibility.kernel", "thesis"},
+        {"clustered_visibility.vals", "30"}}},
       {"imperfect_shadow_maps", {}},
       {"instant_radiosity", {}},
       {"instant_radiosity", {{"instant_radiosity.block", "8"}}},
