@@ -64,6 +64,11 @@ bool hasFailed(const bench::StressResult& result) {
   return result.worst().verdict == bench::StressVerdict::failed;
 }
 
+bool isOf(const bench::StressResult& result, const Case& c) {
+  return result.technique == c.technique->info->name && result.name == c.stressCase->name &&
+         result.scene == c.stressCase->scene;
+}
+
 /// The results in a folder: written after every case, so that a run that was stopped goes on where it was.
 class Table {
  public:
@@ -81,14 +86,12 @@ class Table {
     } catch (const Error& error) {
       throw Error(fmt::format("{}: {}", file.string(), error.what()));
     }
-    std::erase_if(results_, hasFailed);
   }
 
-  /// Whether the case has a result of what it asks for and is measured with now.
+  /// Whether the case has a result of what it asks for and is measured with now, and has not failed.
   bool holds(const Case& c, const bench::Provenance& now) const {
     return std::ranges::any_of(results_, [&](const bench::StressResult& r) {
-      return r.technique == c.technique->info->name && r.name == c.stressCase->name &&
-             r.scene == c.stressCase->scene && r.settings == c.stressCase->settings &&
+      return isOf(r, c) && !hasFailed(r) && r.settings == c.stressCase->settings &&
              r.beside == c.stressCase->beside && r.allowed == c.stressCase->factor &&
              bench::staleness(r.provenance, now).empty();
     });
@@ -110,7 +113,12 @@ class Table {
   }
 
   std::string text() const { return toMarkdown(results_); }
-  bool failed() const { return std::ranges::any_of(results_, hasFailed); }
+  /// Whether any of the cases has failed. Others may have in an earlier run, which stay in the table.
+  bool failed(const std::vector<Case>& cases) const {
+    return std::ranges::any_of(results_, [&](const bench::StressResult& r) {
+      return hasFailed(r) && std::ranges::any_of(cases, [&](const Case& c) { return isOf(r, c); });
+    });
+  }
 
  private:
   fs::path folder_;
@@ -160,7 +168,7 @@ int runStress(const StressArguments& options) {
   }
   table.write();  // also where the folder held everything
   fmt::print("{}", table.text());
-  return table.failed() ? 1 : 0;
+  return table.failed(cases) ? 1 : 0;
 }
 
 }  // namespace

@@ -4,7 +4,7 @@ import {METRICS, TIMES, errorText, isNumber} from "./metrics.js";
 import {command} from "./command.js";
 import {enlarge} from "./enlarge.js";
 import {picture} from "./pictures.js";
-import {ownName, settings} from "./series.js";
+import {outdatedText, ownName, settings} from "./series.js";
 
 /**
  * The thumbnail of picture `shown` of a list, [{thumbnail, whole, name, text}], with the magnified windows drawn on it; pressed,
@@ -44,6 +44,7 @@ export function detail(table, row) {
       el("figure", {}, framed(table, pictures, i), el("figcaption", {}, caption))))
       : el("p", {class: "note"}, "No pictures were kept; a suite with pictures = true keeps them."),
     row.failure ? el("p", {}, `Failed: ${row.failure}`) : facts(row),
+    row.outdated ? el("p", {class: "note"}, outdatedText([row])) : null,
     command(row),
   ].filter(Boolean);
 }

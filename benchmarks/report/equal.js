@@ -3,21 +3,22 @@ import {breakable, el, milliseconds, number, slider} from "./dom.js";
 import {framed} from "./detail.js";
 import {errorText, measured} from "./metrics.js";
 import {picture} from "./pictures.js";
-import {ownName, settings} from "./series.js";
+import {OUTDATED, outdatedText, ownName, settings} from "./series.js";
 import {swatch} from "./marks.js";
 
 const NEAR = 1.5;  // times or errors within this factor of the target count as equal
 
 const distance = (value, target) => Math.abs(Math.log(value / target));
 
-/** Of every curve the point nearest to the target, if it is near: [{curve, row, ms, error}]. */
+/** Of every curve the point nearest to the target, if it is near, outdated ones after all others: [{curve, row, ms, error}]. */
 export function nearest(curves, metric, time, key, target) {
   const found = [], missing = [];
   for (const curve of curves) {
     const points = measured(curve.rows, metric, time).filter((point) => point[key] > 0);
     if (points.length === 0) continue;
-    const best = points.reduce((a, b) => (distance(b[key], target) < distance(a[key], target) ? b : a));
-    if (distance(best[key], target) <= Math.log(NEAR)) found.push({...best, curve});
+    const age = ({row}) => (row.outdated ? 1 : 0), away = (point) => distance(point[key], target);
+    const [best] = points.filter((point) => away(point) <= Math.log(NEAR)).sort((a, b) => age(a) - age(b) || away(a) - away(b));
+    if (best) found.push({...best, curve});
     else missing.push(curve.name);
   }
   return {found, missing};
@@ -47,10 +48,11 @@ function strip(table, points, metric) {
     ? el("figure", {}, magnified(table.reference.windows, "Reference"),
         el("figcaption", {}, el("strong", {}, "reference"))) : null;
   const shown = points.map(({curve, row, ms}) => el("figure", {}, magnified(row.windows, row.name),
-    el("figcaption", {}, el("strong", {}, swatch(curve), breakable(curve.name)),
+    el("figcaption", {}, el("strong", {}, swatch(curve), breakable(curve.name), row.outdated ? OUTDATED : null),
       Object.entries(settings(row)).map(([name, value]) => el("span", {}, breakable(`${ownName(row, name)} ${value}`))),
       el("span", {}, `${milliseconds(ms)}, error ${errorText(metric, row)}`))));
-  return el("div", {class: "strip"}, reference, shown);
+  const note = outdatedText(points.map(({row}) => row));
+  return [el("div", {class: "strip"}, reference, shown), note ? el("p", {class: "note"}, note) : null].filter(Boolean);
 }
 
 /** One row of pictures with the slider that chooses its target. */
@@ -66,7 +68,7 @@ function equalRow(table, curves, metric, time, kind) {
     const text = `${kind.name(metric, time)} ${kind.text(target)}`;
     body.replaceChildren(el("p", {class: "note", "aria-live": "polite"},
       `${text}, within a factor of ${NEAR}, ${key === "ms" ? "least error" : "quickest"} first.` +
-      (missing.length ? ` Not near it: ${missing.join(", ")}.` : "")), strip(table, found, metric));
+      (missing.length ? ` Not near it: ${missing.join(", ")}.` : "")), ...strip(table, found, metric));
   };
   const target = commonTarget(curves, metric, time, key);
   return el("div", {class: `equal equal-${key}`}, el("h3", {}, kind.title), slider(kind.label, values, target, kind.text, show), body);

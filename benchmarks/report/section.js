@@ -2,7 +2,7 @@
 // shown at a time, so that terms, sizes, modes and renderers never mix.
 import {breakable, chooser, el, putChoosers} from "./dom.js";
 import {METRICS, TIMES, isNumber, knownMetrics, tracedBy} from "./metrics.js";
-import {SEPARATION_FLOOR, curveOf, curves as curvesOf} from "./series.js";
+import {OUTDATED, SEPARATION_FLOOR, curveOf, curves as curvesOf} from "./series.js";
 import {commonTarget, equalRows, nearest} from "./equal.js";
 import {errorTable, framesPerSecond, passTable} from "./tables.js";
 import {detail} from "./detail.js";
@@ -126,7 +126,7 @@ export class Section {
   select(row) {
     this.current = row;
     this.plot.mark(row);
-    this.name.replaceChildren(...breakable(row.name));
+    this.name.replaceChildren(...breakable(row.name), ...(row.outdated ? [OUTDATED] : []));
     this.facts.replaceChildren(...detail(this.table, row));
     for (const line of this.body.querySelectorAll("tr[data-key]")) line.classList.toggle("current", line.dataset.key === row.key);
     const {curves, metric, time} = this;

@@ -14,8 +14,11 @@ export function ownName(row, name) {
   return name.startsWith(own) && !row.technique.includes(",") ? name.slice(own.length) : name;
 }
 
-/** What a row is called in tables; a mark, which outdatedText() explains, tells rows that another version measured. */
-export const markedTitle = (row) => `${row.title || row.technique}${row.outdated ? " †" : ""}`;
+/** Tells rows that another version measured, which outdatedText() explains. */
+export const OUTDATED = " †";
+
+/** What a row is called in tables. */
+export const markedTitle = (row) => `${row.title || row.technique}${row.outdated ? OUTDATED : ""}`;
 
 /** What the mark says, where a row has it. */
 export const outdatedText = (rows) => (rows.some((row) => row.outdated)

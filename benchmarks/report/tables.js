@@ -2,7 +2,7 @@
 import {el, number} from "./dom.js";
 import {TIMES, errorText, isNumber, knownMetrics, lowFrequencyShare, measured, paretoFront} from "./metrics.js";
 import {page} from "./page.js";
-import {markedTitle, outdatedText, settingsText} from "./series.js";
+import {OUTDATED, markedTitle, outdatedText, settingsText} from "./series.js";
 import {percent, sparkline} from "./spectrum.js";
 
 const FRAME = TIMES[0];
@@ -13,6 +13,9 @@ export function tableElement(caption, head, rows) {
   return el("div", {class: "scroll", role: "region", tabindex: 0, "aria-label": caption},
     el("table", {}, el("caption", {}, el("span", {}, caption)), el("thead", {}, el("tr", {}, head.map(header))), el("tbody", {}, rows)));
 }
+
+/** A caption that explains the mark, where a row has it. */
+const withNote = (caption, rows) => [caption, outdatedText(rows).trim()].filter(Boolean).join(". ");
 
 const cell = (value) => el("td", {}, value);
 const text = (value) => el("td", {class: "text"}, value);
@@ -62,7 +65,7 @@ export function errorTable(table, metric, time, onCurrent) {
  * tables differ in their reference alone, the first one's times stand there.
  */
 export function framesPerSecond(tables) {
-  const columns = new Map(), lines = new Map();
+  const columns = new Map(), lines = new Map(), shown = [];
   for (const table of tables) {
     for (const row of table.rows) {
       const ms = FRAME.read(row);
@@ -75,14 +78,17 @@ export function framesPerSecond(tables) {
       columns.set(column, table.time_size[0] * table.time_size[1] * 1e4 + (row.lights ?? 0));
       if (!lines.has(key)) lines.set(key, {row, settings, values: new Map()});
       const {values} = lines.get(key);
-      if (!values.has(column)) values.set(column, ms);
+      if (values.has(column)) continue;
+      values.set(column, {ms, mark: row.outdated ? OUTDATED : ""});  // a line may hold rows of several versions
+      shown.push(row);
     }
   }
   if (lines.size === 0) return null;
   const ordered = [...columns].sort((a, b) => a[1] - b[1]).map(([name]) => name);
-  const rows = [...lines.values()].map(({row, settings, values}) => el("tr", {}, nameCell(row, null), text(settings),
-    ordered.map((column) => cell(values.has(column) ? `${number(1000 / values.get(column))} (${number(values.get(column))} ms)` : "–"))));
-  return tableElement("Frames per second (milliseconds per frame), by resolution and number of lights",
+  const speedText = ({ms, mark}) => `${number(1000 / ms)} (${number(ms)} ms)${mark}`;
+  const rows = [...lines.values()].map(({row, settings, values}) => el("tr", {}, nameCell({...row, outdated: false}, null),
+    text(settings), ordered.map((column) => cell(values.has(column) ? speedText(values.get(column)) : "–"))));
+  return tableElement(withNote("Frames per second (milliseconds per frame), by resolution and number of lights", shown),
     [...NAMES, ...ordered.map((label) => ({label}))], rows);
 }
 
@@ -98,11 +104,11 @@ export function passTable(table) {
     el("tr", {}, nameCell(row, null), text(settingsText(row)), text(String(pass.technique)), text(String(pass.name)),
       cell(number(pass.ms)))));
   return [
-    tableElement("Milliseconds per frame and where they go; passes are timed in a run of their own", [...NAMES,
+    tableElement(withNote("Milliseconds per frame and where they go; passes are timed in a run of their own", timed), [...NAMES,
       ...["maps_ms", "filters_ms", "technique_ms"].map((key) => page.columns[key]), {label: "G-buffer, shading ms"},
       page.columns.median_ms, ...(bounded ? [page.columns.x_bound] : [])],
       summary),
-    every.length ? el("details", {}, el("summary", {}, "Every pass"), tableElement("Milliseconds per pass", [...NAMES,
+    every.length ? el("details", {}, el("summary", {}, "Every pass"), tableElement(withNote("Milliseconds per pass", timed), [...NAMES,
       {label: "of", text: true}, {label: "pass", text: true}, {label: "ms"}], every)) : null,
   ];
 }

@@ -2,6 +2,7 @@
 #include <utility>
 
 #include "core/base/file.h"
+#include "core/bench/private/toml_nesting.h"
 #include "core/bench/private/toml_section.h"
 #include "core/bench/reproduction.h"
 
@@ -52,6 +53,7 @@ Claim parseClaim(const std::string& file, const toml::table& table) {
 }  // namespace
 
 std::vector<Claim> parseClaims(std::string_view toml, const std::string& fileName) {
+  checkTomlNesting(toml, fileName);
   try {
     const toml::table root = toml::parse(toml);
     std::vector<Claim> claims;

@@ -3,6 +3,7 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <utility>
 #include <vector>
 
 #include "core/bench/private/markdown.h"
@@ -15,12 +16,12 @@ namespace {
 using Cells = std::vector<std::string>;
 
 /// The row that is shown, and how much slower than another it is: of the frame and of its shadows.
-Cells ratioCells(const Row& shown, const Row& slow, const Row& fast) {
-  return {rowName(shown), measuredText(frameRatio(slow, fast)), shadowRatio(slow, fast)};
+Cells ratioCells(const Table& table, const Row& shown, const Row& slow, const Row& fast) {
+  return {markedName(shown, table), measuredText(frameRatio(slow, fast)), shadowRatio(slow, fast)};
 }
 
-void appendAtEqual(Cells& cells, const Row* row, const Row& against) {
-  const Cells more = row == nullptr ? Cells{"none", "-", "-"} : ratioCells(*row, *row, against);
+void appendAtEqual(Cells& cells, const Table& table, const Row* row, const Row& against) {
+  const Cells more = row == nullptr ? Cells{"none", "-", "-"} : ratioCells(table, *row, *row, against);
   cells.insert(cells.end(), more.begin(), more.end());
 }
 
@@ -72,14 +73,16 @@ std::string measuredText(const Ratio& ratio) {
                                     : ratioText(ratio);
 }
 
-const Row* quickest(std::span<const Row> rows, const std::string& technique, const MetricInfo& error,
-                    std::optional<double> limit, const std::function<bool(const Row&)>& counts) {
+const Row* quickest(const Table& table, const std::string& technique, const MetricInfo& error,
+                    std::optional<double> limit) {
+  const auto order = [&](const Row& row) {
+    return std::pair(isOutdated(row, table), row.cost.frameMs.median);
+  };
   const Row* best = nullptr;
-  for (const Row& row : rows) {
-    if (counts && !counts(row)) continue;
+  for (const Row& row : table.rows) {
     if (!isTimed(row) || row.what.technique != technique || boundedError(error, errorOf(row)) > limit)
       continue;
-    if (best == nullptr || row.cost.frameMs.median < best->cost.frameMs.median) best = &row;
+    if (best == nullptr || order(row) < order(*best)) best = &row;
   }
   return best;
 }
@@ -98,6 +101,10 @@ std::string rowName(const Row& row) {
   return row.what.title.empty() ? settingsName(row) : row.what.title;
 }
 
+std::string markedName(const Row& row, const Table& table) {
+  return isOutdated(row, table) ? rowName(row) + kOutdatedMark : rowName(row);
+}
+
 std::string settingsName(const Row& row) {
   std::string name = row.what.technique;
   for (const auto& [parameter, value] : row.what.parameters)
@@ -106,7 +113,8 @@ std::string settingsName(const Row& row) {
   return lights.empty() ? name : fmt::format("{}, environment lights {}", name, lights);
 }
 
-std::string comparisonMarkdown(std::span<const Row> rows) {
+std::string comparisonMarkdown(const Table& table) {
+  const std::vector<Row>& rows = table.rows;
   const Row* baseline = baselineOf(rows);
   if (baseline == nullptr) return "";
   const std::string& technique = baseline->what.technique;
@@ -114,11 +122,11 @@ std::string comparisonMarkdown(std::span<const Row> rows) {
   std::string text = fmt::format(
       "\nTimes of {} as multiples of each row's (frame, with its 95 % interval; n = 1: one turn, no interval "
       "| shadows, of one turn: maps, filters and the technique's passes)",
-      markdownText(rowName(*baseline)));
+      markdownText(markedName(*baseline, table)));
   if (std::ranges::none_of(rows, other)) {  // settings of one technique
     text += ":\n\n" + markdownHead({{"settings", Align::left}, {"frame"}, {"shadows"}});
     for (const Row& row : rows)
-      if (isTimed(row) && &row != baseline) text += markdownRow(ratioCells(row, *baseline, row));
+      if (isTimed(row) && &row != baseline) text += markdownRow(ratioCells(table, row, *baseline, row));
     return text;
   }
   std::vector<MarkdownHead> heads = {{"technique", Align::left}, {"frame"}, {"shadows"}};
@@ -132,9 +140,10 @@ std::string comparisonMarkdown(std::span<const Row> rows) {
                       markdownHead(heads));
   for (const Row& row : rows) {
     if (!other(row)) continue;
-    Cells cells = ratioCells(row, *baseline, row);
+    Cells cells = ratioCells(table, row, *baseline, row);
     for (const MetricInfo* error : kCompared)
-      appendAtEqual(cells, quickest(rows, technique, *error, boundedError(*error, errorOf(row))), row);
+      appendAtEqual(cells, table, quickest(table, technique, *error, boundedError(*error, errorOf(row))),
+                    row);
     text += markdownRow(cells);
   }
   return text;

@@ -21,6 +21,21 @@ double noiseOfDifference(const Metrics& a, const Metrics& b) {
   return 3 * 2 * sigma * (a.rmse + b.rmse + sigma) / std::sqrt(pixels) + rounding;
 }
 
+void compareErrors(const Row& before, const Row& now, Change& change) {
+  // The error of a penumbra stands beside none of a whole picture.
+  const bool penumbra = before.penumbra && now.penumbra;
+  const Metrics &a = penumbra ? *before.penumbra : before.error, &b = penumbra ? *now.penumbra : now.error;
+  change.errorBefore = a.rmse;
+  change.error = b.rmse;
+  change.otherReference = !mayBeEqual(before.referenceFile, now.referenceFile);
+  // Another reference has other noise, of which an error below its floor may consist.
+  const double floors = std::max(a.noise_floor.value_or(0), b.noise_floor.value_or(0)),
+               least = change.otherReference ? floors : 0;
+  const double growth = b.rmse * b.rmse - a.rmse * a.rmse, noise = noiseOfDifference(a, b);
+  change.worse = growth > noise && b.rmse > least;
+  change.better = -growth > noise && a.rmse > least;
+}
+
 Change compareRows(const Row& before, const Row& now, const RegressionOptions& options) {
   Change change;
   change.label = label(now.what);
@@ -28,12 +43,7 @@ Change compareRows(const Row& before, const Row& now, const RegressionOptions& o
   const std::string &then = before.provenance.scene, &files = now.provenance.scene;
   change.otherFiles = !mayBeEqual(then, files);
   if (!now.failure.empty()) return change;
-  const Metrics &a = errorOf(before), &b = errorOf(now);
-  change.errorBefore = a.rmse;
-  change.error = b.rmse;
-  const double growth = b.rmse * b.rmse - a.rmse * a.rmse, noise = noiseOfDifference(a, b);
-  change.worse = growth > noise;
-  change.better = -growth > noise;
+  compareErrors(before, now, change);
   const std::string &there = before.cost.machine, &here = now.cost.machine;
   change.elsewhere = !there.empty() && !here.empty() && there != here;
   if (change.elsewhere) return change;
@@ -56,6 +66,7 @@ std::string verdict(const Change& change) {
   add(change.faster, "faster");
   add(change.better, "better");
   add(change.otherFiles && !text.empty(), "the scene has changed");
+  add(change.otherReference && !text.empty(), "the reference has changed");
   return text;
 }
 
@@ -109,6 +120,8 @@ std::string toMarkdown(const Regression& regression) {
     text += fmt::format("; times of {} not compared, which two machines measured", elsewhere);
   if (const auto others = count(&Change::otherFiles); others > 0)
     text += fmt::format("; the scenes of {} have changed in between", others);
+  if (const auto others = count(&Change::otherReference); others > 0)
+    text += fmt::format("; the references of {} have changed in between", others);
   text += "\n";
   std::vector<Change> shown;
   std::ranges::copy_if(regression.changes, std::back_inserter(shown),

@@ -23,7 +23,8 @@ struct Change {
   Ratio time;                         ///< later / earlier, frame; value 0: not timed in both, or elsewhere
   bool elsewhere = false;             ///< on another machine: the times are not compared
   bool otherFiles = false;            ///< the scene's files have changed in between
-  double errorBefore = 0, error = 0;  ///< RMSE, in the penumbra where that is known
+  bool otherReference = false;        ///< the errors are those against another reference
+  double errorBefore = 0, error = 0;  ///< RMSE, in the penumbra where both rows know it
   bool slower = false, faster = false;
   bool worse = false, better = false;
   std::string failure;  ///< not empty: the later one failed, and the rest is void
@@ -40,6 +41,8 @@ struct Regression {
 /// does to it: MSE_a - MSE_b has the standard deviation 2 sigma (RMSE_a + RMSE_b + sigma) / sqrt(pixels) at
 /// most, where sigma is the references' noise and that and the errors are spread evenly over the pixels. (It
 /// is larger where both gather in the same few; rows against the same reference differ by no noise at all.)
+/// Against another reference than before, as its file's name says, an error below the noise floor is neither
+/// worse nor better: it may be noise alone, which rare paths of dark pictures gather in few pixels.
 LIMN_API Regression compareResults(std::span<const Row> before, std::span<const Row> now,
                                    const RegressionOptions& options = {});
 

@@ -89,10 +89,11 @@ Json rowJson(const Row& row, const std::vector<Window>& windows, EmbeddedPicture
   }
   if (const std::optional<ReferenceTime> time = referenceTime(row))
     json["reference_ms"] = {{"value", time->ms}, {"at_least", time->atLeast}};
+  // One file after the other: what is asked of a picture in one go decodes it once.
   json["picture"] = pictureJson(row.picture, pictures);
-  json["difference"] = pictureJson(row.difference, pictures);
   json["windows"] = Json::array();
   for (const Window& window : windows) json["windows"].push_back(pictures.window(row.picture, window));
+  json["difference"] = pictureJson(row.difference, pictures);
   return json;
 }
 
@@ -179,7 +180,7 @@ Json tableJson(const Table& table, const Site& ofRenderer, EmbeddedPictures& pic
   for (const Window& w : windows) json["windows"].push_back({w.x, w.y, w.width, w.height});
   json["reference"] = referenceJson(table, reference, windows, pictures);
   const Row* baseline = baselineOf(table.rows);
-  if (baseline != nullptr) json["baseline"] = rowName(*baseline);
+  if (baseline != nullptr) json["baseline"] = markedName(*baseline, table);
   json["rows"] = Json::array();
   for (const Row& row : table.rows) {
     json["rows"].push_back(rowJson(row, windows, pictures));

@@ -158,6 +158,14 @@ Image EmbeddedPictures::read(const std::string& file) const {
   }
 }
 
+const Image& EmbeddedPictures::decoded(const std::string& file) {
+  if (file != decodedFile_) {
+    decoded_ = read(file);
+    decodedFile_ = file;
+  }
+  return decoded_;
+}
+
 int EmbeddedPictures::add(const std::string& name, Kind kind, const char* type,
                           std::span<const std::uint8_t> file) {
   positions_[static_cast<std::size_t>(kind)].push_back(uris_.size());
@@ -170,7 +178,7 @@ int EmbeddedPictures::whole(const std::string& file) {
   const fs::path path = inside(folder_, file);
   if (path.empty()) return known_[file] = -1;
   if (compressed_) {
-    const Image image = read(file);
+    const Image& image = decoded(file);
     if (image.empty()) return known_[file] = -1;
     return add(file, Kind::whole, "webp",
                encodeWebp(reduction_ > 1 ? reduced(image, reduction_) : image, file));
@@ -183,7 +191,7 @@ int EmbeddedPictures::whole(const std::string& file) {
 int EmbeddedPictures::thumbnail(const std::string& file) {
   const std::string name = file + "#thumbnail";
   if (const auto found = known_.find(name); found != known_.end()) return found->second;
-  const Image image = read(file);
+  const Image& image = decoded(file);
   if (image.empty()) return known_[name] = -1;
   const int factor = (std::max(image.width(), image.height()) + kThumbnail - 1) / kThumbnail;
   return add(name, Kind::thumbnail, "webp", encodeWebp(reduced(image, factor), name));
@@ -192,7 +200,7 @@ int EmbeddedPictures::thumbnail(const std::string& file) {
 int EmbeddedPictures::window(const std::string& file, const Window& w) {
   const std::string name = fmt::format("{}#{},{},{},{}", file, w.x, w.y, w.width, w.height);
   if (const auto found = known_.find(name); found != known_.end()) return found->second;
-  const Image image = read(file);
+  const Image& image = decoded(file);
   if (image.empty() || w.x < 0 || w.y < 0 || w.x + w.width > image.width() || w.y + w.height > image.height())
     return known_[name] = -1;
   return add(name, Kind::window, "png", encodePng(cut(image, w), name));

@@ -119,15 +119,6 @@ struct EqualError {
   std::optional<Verdict> verdict = {};
 };
 
-/// The quickest row of the technique that errs no more; an outdated one only where the newest version
-/// measured none that does.
-const Row* quickestAtEqualError(const Table& table, const std::string& technique, double limit) {
-  constexpr const MetricInfo& rmse = metricInfo(&Metrics::rmse);
-  const Row* newest =
-      quickest(table.rows, technique, rmse, limit, [&](const Row& row) { return !isOutdated(row, table); });
-  return newest != nullptr ? newest : quickest(table.rows, technique, rmse, limit);
-}
-
 EqualError atEqualError(const Claim& claim, const Row& slow, const Found& fast) {
   if (claim.measure == ClaimMeasure::memory) return {"-: a claim of memory"};
   const std::string& technique = slow.what.technique;
@@ -136,7 +127,7 @@ EqualError atEqualError(const Claim& claim, const Row& slow, const Found& fast) 
   if (error.noise_floor && error.rmse < *error.noise_floor)
     return {"-: the reference's noise hides the errors"};
   constexpr const MetricInfo& rmse = metricInfo(&Metrics::rmse);
-  const Row* best = quickestAtEqualError(*fast.table, technique, error.rmse);
+  const Row* best = quickest(*fast.table, technique, rmse, error.rmse);
   if (best == nullptr) return {fmt::format("-: no row of {} reaches {}", technique, shownText(rmse, error))};
   const Pair pair = byFrames(claim.thesis, *best, *fast.row);
   return {fmt::format("{}: {}; differ in {}", pair.withTurns(), settingsName(*best),

@@ -262,9 +262,7 @@ Suite buildSuite(const toml::table& root, const std::string& file, bool mayInclu
 }
 
 Suite parse(std::string_view text, const std::string& file, bool mayInclude) {
-  if (const int line = tooDeepLine(text))
-    throw UsageError(
-        oneLine(fmt::format("{}:{}: nested deeper than {} levels", file, line, kMaxTomlNesting)));
+  checkTomlNesting(text, file);
   try {
     return buildSuite(toml::parse(text), file, mayInclude);
   } catch (const toml::parse_error& error) {

@@ -25,6 +25,9 @@ constexpr std::string_view kHeading = "### ";                  ///< of a table i
 constexpr std::string_view kCsvBegin = "scene,camera,light,";  ///< of the CSVs of every version
 constexpr std::string_view kPictureHead = "| | | |";           ///< of a table in pictures.md
 constexpr int kPictureHeadLine = 3;                            ///< of the first one, behind its heading
+constexpr const char* kOutdatedLine =                          ///< explains kOutdatedMark
+    "\n\u2020 measured with another version of the program, of a technique or of the scene than the newest "
+    "row\n";
 
 std::string timeSizeText(const Case& c) {
   return c.timeWidth > 0 ? fmt::format(", times at {}x{}", c.timeWidth, c.timeHeight) : "";
@@ -58,9 +61,15 @@ std::string settingKey(const Case& c) {
   return c.environmentLights > 0 ? text + "\x1c" + describeEnvironmentLights(c) : text;
 }
 
+/// Whether it is known which version measured the row: one that does not say is of an earlier version, a
+/// failure of any.
+bool knowsVersion(const Row& row) {
+  return row.failure.empty() || !row.provenance.program.empty();
+}
+
 /// Whether `row` stands in the place of one of the same setting that comes before it.
 bool supersedes(const Row& row, const Row& before) {
-  if (!row.provenance.program.empty() && !staleness(before.provenance, row.provenance).empty())
+  if (knowsVersion(row) && knowsVersion(before) && !staleness(before.provenance, row.provenance).empty())
     return row.line >= before.line;
   if (row.failure.empty() != before.failure.empty()) return row.failure.empty();
   const auto effort = [](const FrameTime& time) { return std::pair(time.turns >= kFewestTurns, time.n); };
@@ -189,7 +198,7 @@ std::vector<std::string> markdownCells(const Chosen& chosen, const Row& row, con
     if (hasCell(row, *column)) cells.push_back(column->shown(row, table));
   if (!row.failure.empty())
     cells.push_back("failed: " + row.failure);  // a reader fills the line with empty cells
-  if (isOutdated(row, table)) cells.front() += " \u2020";
+  if (isOutdated(row, table)) cells.front() += kOutdatedMark;
   return cells;
 }
 
@@ -312,10 +321,8 @@ std::string toMarkdown(const Table& table) {
   text += markdownHead(heads);
   for (const Row& row : table.rows) text += markdownRow(markdownCells(parts.columns, row, table));
   if (std::ranges::any_of(table.rows, [&](const Row& row) { return isOutdated(row, table); }))
-    text +=
-        "\n\u2020 measured with another version of the program, of a technique or of the scene than the "
-        "newest row\n";
-  return text + comparisonMarkdown(table.rows);
+    text += kOutdatedLine;
+  return text + comparisonMarkdown(table);
 }
 
 std::string toCsv(const Table& table) {
@@ -336,6 +343,7 @@ std::string toCsv(const Table& table) {
 
 std::string picturesMarkdown(const Table& table) {
   std::vector<std::string> pictures, captions;
+  bool marked = false;
   for (const Row& row : table.rows) {
     const std::string picture = markdownPicture(row.picture);
     if (picture.empty()) continue;
@@ -343,13 +351,14 @@ std::string picturesMarkdown(const Table& table) {
       pictures.push_back(markdownPicture(referencePicture(row)));
       captions.push_back("reference");
     }
-    std::string caption =
-        fmt::format("{}: {} {}", rowName(row), kCompared[0]->label, shownText(*kCompared[0], row.error));
+    std::string caption = fmt::format("{}: {} {}", markedName(row, table), kCompared[0]->label,
+                                      shownText(*kCompared[0], row.error));
     if (row.penumbra)
       caption += fmt::format(" ({} in the penumbra)", shownText(*kCompared[0], *row.penumbra));
     if (isTimed(row)) caption += fmt::format(", {:.1f} ms", row.cost.frameMs.median);
     pictures.push_back(picture);
     captions.push_back(caption);
+    marked |= isOutdated(row, table);
   }
   if (pictures.empty()) return "";
   constexpr std::size_t inLine = 3;
@@ -364,7 +373,7 @@ std::string picturesMarkdown(const Table& table) {
     }
     text += "\n" + markdownRow(below);
   }
-  return text;
+  return marked ? text + kOutdatedLine : text;
 }
 
 void writeTables(std::span<const Row> rows, const fs::path& folder) {

@@ -43,8 +43,8 @@ LIMN_API std::string toMarkdown(const Table& table);
 /// spreadsheet may take one that begins with =, +, - or @ for a formula; import such columns as text.
 LIMN_API std::string toCsv(const Table& table);
 
-/// Returns the pictures that were kept, the reference's first, three in a line with error and time below; ""
-/// if there are none.
+/// Returns the pictures that were kept, the reference's first, three in a line with error and time below;
+/// outdated rows have a mark that a line below explains. Returns "" if there are none.
 LIMN_API std::string picturesMarkdown(const Table& table);
 
 /// Writes tables.md, one CSV per table and, where pictures were kept, pictures.md into `folder`. Removes the

@@ -1,7 +1,11 @@
 #include "core/bench/private/toml_nesting.h"
 
+#include <fmt/format.h>
+
 #include <algorithm>
-#include <string>
+
+#include "core/base/error.h"
+#include "core/base/text.h"
 
 namespace limn::bench {
 namespace {
@@ -22,8 +26,7 @@ std::size_t afterString(std::string_view text, std::size_t at) {
   return text.size();
 }
 
-}  // namespace
-
+/// The first line that is too deep, counted from 1; 0 if there is none.
 int tooDeepLine(std::string_view toml) {
   int dots = 0, brackets = 0, line = 1;
   for (std::size_t at = 0; at < toml.size();) {
@@ -48,6 +51,14 @@ int tooDeepLine(std::string_view toml) {
     ++at;
   }
   return 0;
+}
+
+}  // namespace
+
+void checkTomlNesting(std::string_view toml, const std::string& file) {
+  if (const int line = tooDeepLine(toml))
+    throw UsageError(
+        oneLine(fmt::format("{}:{}: nested deeper than {} levels", file, line, kMaxTomlNesting)));
 }
 
 }  // namespace limn::bench

@@ -31,7 +31,8 @@ esac
   }
 
   Outcome call(const std::string& script, const std::string& arguments) const {
-    fs::copy_file(fs::path(kSourceDir) / "scripts" / script, root_ / "scripts" / script);
+    fs::copy_file(fs::path(kSourceDir) / "scripts" / script, root_ / "scripts" / script,
+                  fs::copy_options::overwrite_existing);
     return run(
         {"/bin/bash", "-c", "cd " + caller_.string() + " && ../limn/scripts/" + script + " " + arguments},
         {{"PATH", (folder_ / "programs").string() + ":/usr/bin:/bin"}});
@@ -73,6 +74,28 @@ TEST_F(Scripts, GpuRunTakesSuitesOfTheFolderWhereItIsCalled) {
   EXPECT_THAT(said(), testing::HasSubstr("bench " + (fs::canonical(caller_) / "my.toml").string() + " "))
       << outcome.err;
   EXPECT_THAT(said(), testing::HasSubstr("bench bound "));
+}
+
+/// Results lie in a folder of the suite's name, which is bench for those of all techniques.
+TEST_F(Scripts, GpuRunRefusesTwoSuitesOfOneName) {
+  for (const char* folder : {"a", "b"}) {
+    fs::create_directory(caller_ / folder);
+    std::ofstream(caller_ / folder / "bench.toml") << "name = 'my'\n";
+  }
+  const Outcome outcome = call("gpu-run", "--software a/bench.toml bound b/bench.toml");
+  EXPECT_EQ(outcome.status, 2);
+  EXPECT_THAT(outcome.err, testing::HasSubstr("two suites are called bench: "));
+  EXPECT_FALSE(fs::exists(root_ / "docs"));
+}
+
+TEST_F(Scripts, GpuRunLeavesNoTableOfAnEarlierRun) {
+  call("gpu-run", "--software bound");
+  std::vector<fs::path> packed;
+  for (const auto& entry : fs::directory_iterator(root_ / "docs/results")) packed.push_back(entry.path());
+  ASSERT_EQ(packed.size(), 1u);
+  std::ofstream(packed[0] / "bound/gone.csv") << "scene,camera,light\n";
+  call("gpu-run", "--software bound");
+  EXPECT_FALSE(fs::exists(packed[0] / "bound/gone.csv"));
 }
 
 TEST_F(Scripts, TryPackageLeavesAFolderThatIsNoSystem) {

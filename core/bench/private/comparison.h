@@ -2,7 +2,6 @@
 // baseline's technique with the fewest samples whose error is not above the row's.
 #pragma once
 
-#include <functional>
 #include <optional>
 #include <span>
 #include <string>
@@ -11,6 +10,7 @@
 #include "core/base/export.h"
 #include "core/bench/ratio.h"
 #include "core/bench/row.h"
+#include "core/bench/tables.h"
 #include "core/image/metric_table.h"
 
 namespace limn::bench {
@@ -64,9 +64,10 @@ LIMN_API std::string ratioText(const Ratio& ratio, int digits = 2);
 LIMN_API std::string measuredText(const Ratio& ratio);
 
 /// Returns the quickest timed row of the technique whose boundedError() is not above `limit` (in the
-/// penumbra, where that is known); null if there is none. Rows count that `counts` accepts; empty: all do.
-LIMN_API const Row* quickest(std::span<const Row> rows, const std::string& technique, const MetricInfo& error,
-                             std::optional<double> limit, const std::function<bool(const Row&)>& counts = {});
+/// penumbra, where that is known); null if there is none. An outdated row is taken only where the newest
+/// version measured none.
+LIMN_API const Row* quickest(const Table& table, const std::string& technique, const MetricInfo& error,
+                             std::optional<double> limit);
 
 /// Holds how long the reference's own method takes to reach the row's error, with as many cores.
 struct ReferenceTime {
@@ -83,14 +84,18 @@ LIMN_API std::optional<ReferenceTime> referenceTime(const Row& row);
 
 /// Returns a name of the row for people: its title, or settingsName().
 LIMN_API std::string rowName(const Row& row);
+/// Marks the name of an outdated row; the line below a table explains it.
+inline constexpr const char* kOutdatedMark = " \u2020";
+/// Returns rowName() with kOutdatedMark where the row is an outdated one of its table.
+LIMN_API std::string markedName(const Row& row, const Table& table);
 /// Returns the technique with the parameters and the environment's lights that the suite sets.
 LIMN_API std::string settingsName(const Row& row);
 
 /// Returns Markdown with a line for each timed row except those of the baseline's technique: frame time and
 /// shadow time (maps, filters, technique) as factors by which the baseline is slower (above 1: the row is
 /// faster), and the same for the fastest rows of the baseline's technique whose RMSE and whose structured
-/// error are not above the row's (in the penumbra, where that is known). Returns "" without a timed row of
-/// the baseline.
-LIMN_API std::string comparisonMarkdown(std::span<const Row> rows);
+/// error are not above the row's (in the penumbra, where that is known), as quickest() finds them. Outdated
+/// rows have kOutdatedMark, which the table above explains. Returns "" without a timed row of the baseline.
+LIMN_API std::string comparisonMarkdown(const Table& table);
 
 }  // namespace limn::bench

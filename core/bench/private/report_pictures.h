@@ -69,6 +69,7 @@ class LIMN_API EmbeddedPictures {
 
  private:
   enum class Kind { thumbnail, window, whole };
+  const Image& decoded(const std::string& file);
   int add(const std::string& name, Kind kind, const char* type, std::span<const std::uint8_t> file);
 
   std::filesystem::path folder_;
@@ -77,6 +78,8 @@ class LIMN_API EmbeddedPictures {
   std::vector<std::string> uris_;
   std::array<std::vector<std::size_t>, 3> positions_;  // by Kind
   std::map<std::string, int> known_;
+  std::string decodedFile_;  ///< of the picture that was decoded last: what is asked of it follows
+  Image decoded_;
 };
 
 }  // namespace limn::bench

@@ -164,7 +164,7 @@ TEST(BenchMarkdown, NoPageHoldsMarkupOfARow) {
   const std::vector<Row> before = {known, other};
   std::string pages = toMarkdown(compareResults(before, rows));
   for (const Table& table : makeTables(rows)) pages += toMarkdown(table) + picturesMarkdown(table);
-  pages += comparisonMarkdown(rows);
+  pages += comparisonMarkdown({"", "", rows});
   const std::vector<StressResult> stress = {{.technique = text,
                                              .name = text,
                                              .scene = text,

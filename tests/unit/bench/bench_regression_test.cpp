@@ -193,6 +193,36 @@ TEST(Regression, PenumbraDecidesWhereItIsKnown) {
   EXPECT_TRUE(compareResults(before, now).changes[0].worse);
 }
 
+/// A row of an earlier version knows the error of the whole picture alone.
+TEST(Regression, PenumbraStandsBesideNoWholePicture) {
+  std::vector<Row> before = {row("a", 0.1, 5)}, now = before;
+  now[0].penumbra = now[0].error;
+  now[0].penumbra->rmse = 0.4;
+  const Change change = compareResults(before, now).changes.at(0);
+  EXPECT_FALSE(change.worse);
+  EXPECT_EQ(change.error, 0.1);
+  std::swap(before, now);
+  EXPECT_FALSE(compareResults(before, now).changes[0].better);
+}
+
+/// In dark pictures a few pixels hold the noise, so that the errors against two references may differ by more
+/// than noise that is spread evenly would explain.
+TEST(Regression, NoiseOfAnotherReferenceIsNotWorse) {
+  std::vector<Row> before = {row("a", 0.001, 5)}, now = {row("a", 0.0025, 5)};
+  before[0].referenceFile = now[0].referenceFile = "references/a.exr";
+  EXPECT_TRUE(compareResults(before, now).changes.at(0).worse) << "the reference is the same";
+  EXPECT_EQ(toMarkdown(compareResults(before, now)).find("reference"), std::string::npos);
+  now[0].referenceFile = "references/b.exr";
+  EXPECT_FALSE(compareResults(before, now).found());
+  EXPECT_NE(toMarkdown(compareResults(before, now)).find("; the references of 1 have changed in between\n"),
+            std::string::npos);
+  EXPECT_FALSE(compareResults(now, before).changes[0].better);
+  now[0].error.rmse = 0.0035;  // above the floor
+  EXPECT_NE(toMarkdown(compareResults(before, now)).find("| worse, the reference has changed |"),
+            std::string::npos);
+  EXPECT_TRUE(compareResults(now, before).changes[0].better);
+}
+
 TEST(Regression, FailuresCountAndStrangersDoNot) {
   std::vector<Row> before = {row("a", 0.1, 5), row("gone", 0.1, 5)},
                    now = {row("a", 0.1, 5), row("new", 0.1, 5)};

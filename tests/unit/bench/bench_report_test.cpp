@@ -88,6 +88,18 @@ TEST_F(BenchReport, HoldsRowsPicturesAndWindows) {
   }
 }
 
+TEST_F(BenchReport, AnOutdatedBaselineIsMarked) {
+  std::vector<Row> rows = {row("pcss", 0.5f), row("vssm", 0.5f)};
+  rows[0].what.baseline = true;
+  for (std::size_t i = 0; i < rows.size(); ++i) {
+    rows[i].provenance.program = "1";
+    rows[i].line = i + 1;
+  }
+  EXPECT_EQ(data(rows)["tables"][0]["baseline"], "pcss");
+  rows[1].provenance.program = "2";
+  EXPECT_EQ(data(rows)["tables"][0]["baseline"], "pcss \u2020");
+}
+
 TEST_F(BenchReport, HoldsWhatWasMeasuredRatherThanAskedFor) {
   std::vector<Row> rows = {row("pcss", 0.5f), row("vssm", 0.5f), row("savsm", 0.5f)};
   for (Row& row : rows) row.what.turns = 5;
@@ -298,6 +310,17 @@ TEST_F(BenchReport, ThumbnailsHaveAtMost192Pixels) {
   EXPECT_EQ(thumbnail(384, 60), thumbnail(192, 30)) << "black pictures of a size are the same file";
   EXPECT_EQ(thumbnail(30, 194), thumbnail(15, 97));
   EXPECT_NE(thumbnail(192, 30), thumbnail(96, 15)) << "no smaller than they need to be";
+}
+
+/// Decoding takes most of a report's time: a file that is gone in between is not missed.
+TEST_F(BenchReport, WhatIsAskedOfAPictureInOneGoDecodesItOnce) {
+  const std::vector<std::string> files = {row("pcss", 0.5f).picture, row("vssm", 0.5f).picture};
+  EmbeddedPictures pictures(results(), files, 0);
+  EXPECT_EQ(pictures.thumbnail(files[0]), 0);
+  fs::remove(results() / files[0]);
+  EXPECT_EQ(pictures.window(files[0], {0, 0, 8, 8}), 1);
+  EXPECT_EQ(pictures.thumbnail(files[1]), 2);
+  EXPECT_EQ(pictures.window(files[0], {8, 8, 8, 8}), -1) << "it is read again after another";
 }
 
 TEST(WindowChooser, FindsWherePicturesDiffer) {

@@ -347,6 +347,17 @@ TEST(Reproduction, BrokenClaimsNameTheirPlace) {
     EXPECT_THROW(parseClaims(text, "c"), UsageError) << text;
 }
 
+TEST(Reproduction, DeeplyNestedClaimsAreRefusedBeforeParsing) {
+  std::string dotted = "[[claims]]\nwhere";
+  for (int i = 0; i < 50'000; ++i) dotted += ".a";
+  try {
+    parseClaims(dotted + " = 1\n", "c");
+    FAIL() << "accepted";
+  } catch (const UsageError& error) {
+    EXPECT_THAT(error.what(), HasSubstr("c:2: nested deeper than 16 levels"));
+  }
+}
+
 /// Of everything that `limn bench thesis` measures, in one folder, in the turns that its suites ask for.
 TEST(Reproduction, TheThesissSuiteMeasuresEveryClaimOnce) {
   const std::filesystem::path folder = std::filesystem::path(limn::test::kSourceDir) / "benchmarks";

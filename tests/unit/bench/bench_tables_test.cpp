@@ -1,11 +1,9 @@
 #include <gtest/gtest.h>
 
 #include <algorithm>
-#include <cmath>
 #include <set>
 #include <sstream>
 
-#include "core/bench/private/comparison.h"
 #include "core/bench/tables.h"
 #include "tests/unit/bench/bench_rows.h"
 #include "tests/unit/bench/csv.h"
@@ -97,6 +95,8 @@ TEST(BenchTables, ASettingStandsThereOnce) {
   EXPECT_EQ(shown({turns, measured(20)}).what.frames, 5);
   EXPECT_EQ(shown({measured(20, "1", 1), measured(5, "2", 2)}).what.frames, 5) << "the newer program's";
   EXPECT_EQ(shown({measured(20, "2", 3), measured(5, "1", 2)}).what.frames, 20) << "measured again";
+  EXPECT_EQ(shown({measured(5, "1", 2), measured(20, "", 1)}).what.frames, 5)
+      << "one of an earlier version, which does not say which, comes before the newest program's";
   Row failed = measured(0, "1", 2);
   failed.failure = "lost";
   EXPECT_EQ(shown({measured(5, "1", 1), failed}).failure, "");
@@ -291,84 +291,6 @@ TEST(BenchTables, NothingRanksBelowTheNoise) {
   const std::string compared = line("| vssm samples=16 |");
   EXPECT_NE(compared.find("| pcss samples=16 |"), std::string::npos) << text;
   EXPECT_EQ(compared.find("samples=1024"), std::string::npos) << text;
-}
-
-TEST(BenchTables, ReferencesTakeLongerForLess) {
-  Row row = exampleRow(exampleCase("a"));
-  row.referenceSeconds = 50;
-  row.error.noise_floor = 3 * 0.01;
-  row.error.rmse = std::hypot(0.05, 0.01);  // 5 sigma beyond the reference's own noise
-  ASSERT_TRUE(referenceTime(row));
-  EXPECT_NEAR(referenceTime(row)->ms, 50e3 / 25, 1e-6);
-  EXPECT_FALSE(referenceTime(row)->atLeast);
-  row.error.rmse = 0.011;  // drowns in the noise
-  EXPECT_NEAR(referenceTime(row)->ms, 50e3 * 4, 1e-6);
-  EXPECT_TRUE(referenceTime(row)->atLeast);
-  row.what.timeWidth = row.what.timeHeight = 1024;  // errors and times of different pictures
-  EXPECT_FALSE(referenceTime(row));
-  row.what.timeWidth = row.what.timeHeight = 0;
-  row.what.aa = 2;  // the error of four frames, the time of one
-  EXPECT_FALSE(referenceTime(row));
-  row.what.aa = 1;
-  row.error.noise_floor = 0;  // no noise, no Monte Carlo
-  EXPECT_FALSE(referenceTime(row));
-  row.error.noise_floor = 0.03;
-  row.cost.software = false;  // the reference is the processor's, the frames are not
-  EXPECT_FALSE(referenceTime(row));
-  row.cost.software = true;
-  row.referenceSeconds.reset();  // of an earlier version
-  EXPECT_FALSE(referenceTime(row));
-}
-
-TEST(BenchTables, RowsAreComparedWithTheBaseline) {
-  std::vector<Row> rows = {
-      exampleRow(exampleCase("pcss", 1024), 0.1, 8), exampleRow(exampleCase("pcss", 16), 0.2, 2),
-      exampleRow(exampleCase("pcss", 64), 0.15, 4), exampleRow(exampleCase("vssm"), 0.16, 1)};
-  EXPECT_EQ(comparisonMarkdown(rows), "");
-  rows[0].what.baseline = true;
-  for (Row& row : rows) row.penumbra->structured = 0.5 * row.penumbra->rmse;
-  rows[3].penumbra->structured = 0.01;
-  rows[3].what.title = "VSSM";
-  std::string text = comparisonMarkdown(rows);
-  EXPECT_NE(
-      text.find("| VSSM | 8.00 (n = 1) | 8.00 | pcss samples=64 | 4.00 (n = 1) | 4.00 | none | - | - |"),
-      std::string::npos)
-      << text;
-  EXPECT_NE(text.find("n = 1: one turn, no interval | shadows, of one turn: maps,"), std::string::npos)
-      << text;
-  for (Row& row : rows) {  // five turns that do not scatter
-    row.cost.frameMs.turns = 5;
-    row.cost.frameMs.samples.assign(5, row.cost.frameMs.median);
-  }
-  rows[2].cost.frameMs = {4, 4, 4, 1, {4}};
-  text = comparisonMarkdown(rows);
-  EXPECT_NE(
-      text.find("| VSSM | 8.00 (8.00 to 8.00) | 8.00 | pcss samples=64 | 4.00 (n = 1) | 4.00 | none | - "
-                "| - |"),
-      std::string::npos)
-      << text;
-}
-
-/// The map's own light as far as its lights are seen, beside the sum of them.
-TEST(BenchTables, SettingsNameTheLightsOfTheEnvironment) {
-  Case c = exampleCase("pcss", 16);
-  c.environment = "sky";
-  c.environmentLights = 0.015;
-  std::vector<Row> rows = {exampleRow(c, 0.1, 8), exampleRow(c, 0.2, 2), exampleRow(exampleCase("vssm"))};
-  rows[1].what.environmentCombine = "ratio";
-  EXPECT_EQ(settingsName(rows[0]), "pcss samples=16, environment lights 0.015 48 squares area");
-  EXPECT_EQ(settingsName(rows[1]), "pcss samples=16, environment lights 0.015 48 squares area ratio");
-  EXPECT_EQ(settingsName(rows[2]), "vssm samples=16");
-}
-
-TEST(BenchTables, SettingsOfOneTechniqueAreComparedWithTheBaselineAmongThem) {
-  std::vector<Row> rows = {exampleRow(exampleCase("pcss", 1024), 0.1, 8),
-                           exampleRow(exampleCase("pcss", 16), 0.2, 2)};
-  rows[0].what.baseline = true;
-  const std::string text = comparisonMarkdown(rows);
-  EXPECT_NE(text.find("| settings | frame | shadows |\n"), std::string::npos) << text;
-  EXPECT_NE(text.find("| pcss samples=16 | 4.00 (n = 1) | 4.00 |\n"), std::string::npos) << text;
-  EXPECT_EQ(text.find("samples=1024 | "), std::string::npos) << text;
 }
 
 TEST(BenchTables, CsvQuotesAndKeepsPrecision) {
