@@ -143,10 +143,10 @@ TEST_F(CancelTest, leavesNoTrace) {
     scene::Scene scene = shown(*plugin->info);
     const scene::Pose pose = scene::evaluate(scene, 0);
     render::Settings settings;
-    settings.size = {40, 30};
-    settings.techniques = {quick(name)};
-    // What a frame leaves behind shows in few elements as in many, whose frames take seconds, and in few area
-    // lights as in many.
+    settings.size = {32, 24};
+    // What a frame leaves behind shows in few texels and elements as in many, whose frames take seconds, and
+    // in few area lights as in many. On a GPU it may also depend on what is still being drawn.
+    settings.techniques = {device().software() ? smallest(name) : quick(name)};
     ParameterValues& parameters = settings.techniques[0].parameters;
     if (cutsSurfaces(name)) parameters.set("longest_edge", "0.3");
     if (declares(*plugin->info, "vals")) parameters.set("vals", "4");
@@ -200,21 +200,31 @@ TEST_F(CancelTest, leavesNoTrace) {
       renderer.setTime(0);
       return renderer.render(frame::Timing::off, [&passes] { return passes-- == 0; });
     };
-    // Says what is wrong with a frame behind one that is given up before its pass `passes`, if it has that.
+    // Says what is wrong with a frame behind one that is given up before its pass `passes`, if it has that,
+    // and else is drawn whole; nothing waits for that one.
     bool whole = false;
     const auto trace = [&](size_t givenUp, size_t drawn, int passes) -> std::string {
       whole = draw(givenUp, passes);
       EXPECT_TRUE(draw(drawn, -1));
-      const std::string changed = difference(rgb(renderer), wanted[drawn].picture, settings.size.x);
+      const std::vector<float> seen = rgb(renderer);
+      const std::string changed = difference(seen, wanted[drawn].picture, settings.size.x);
       if (changed.empty()) return "";
-      return fmt::format("{} at place {} given up before pass {}, then drawn at place {}: {}; {}{}", name,
-                         givenUp, passes, drawn, changed, madeOf(renderer, wanted[drawn]),
+      const std::string before = whole ? "whole" : fmt::format("given up before pass {}", passes);
+      // Light of the other place with the shadows of this one tells which buffer was read as it was there.
+      const std::string other = difference(seen, wanted[1 - drawn].picture, settings.size.x);
+      return fmt::format("{} at place {} {}, then drawn at place {}: {}; to the other place: {}; {}{}", name,
+                         givenUp, before, drawn, changed, other, madeOf(renderer, wanted[drawn]),
                          afterwards(renderer, wanted[drawn].picture));
     };
     // With each pass the light comes back, so that what ran has to run again, and stays, so that the rest has
     // to run. Where a technique fails, the others say whether the fault is its own.
     size_t place = 0;
     std::string found = trace(place, place, 0);
+    // Another control: where this fails, it is frames that follow one another without a wait, given up or
+    // not.
+    constexpr int all = 1 << 20;
+    if (found.empty()) found = trace(1 - place, place, all);
+    whole = false;
     for (int passes = 0; passes < 64 && !whole && found.empty(); ++passes) {
       found = trace(1 - place, place, passes);
       if (!found.empty()) break;

@@ -84,7 +84,8 @@ TEST_F(PassRoleTest, MapsOfEveryTechniqueAreWhatDrawsTriangles) {
     render::Renderer renderer(device(), scene);
     for (const std::string& name : names) {
       SCOPED_TRACE(name);
-      for (const frame::PassReport& pass : passesOf(renderer, settings(48, 32, output, {quick(name, 16)}))) {
+      for (const frame::PassReport& pass :
+           passesOf(renderer, settings(64, 48, output, {smallest(name, 16)}))) {
         SCOPED_TRACE(pass.name);
         EXPECT_EQ(pass.role == PassRole::core, pass.technique == "core");
         if (pass.role == PassRole::core) continue;
@@ -114,7 +115,7 @@ TEST_F(PassRoleTest, OfShadowMapsAreMapsAndWhatIsDerivedFromThemFilters) {
   for (const std::string name :
        {"hard_shadow_map", "pcf", "savsm", "vssm", "cssm", "moment_soft_shadow_map"}) {
     SCOPED_TRACE(name);
-    const auto passes = passesOf(renderer, settings(48, 32, Term::direct, {quick(name)}));
+    const auto passes = passesOf(renderer, settings(64, 48, Term::direct, {quick(name)}));
     std::set<PassRole> expected{PassRole::map};
     if (name != "hard_shadow_map") expected.insert(PassRole::filter);
     EXPECT_EQ(rolesOf(passes, "shadow"), expected);
@@ -126,7 +127,7 @@ TEST_F(PassRoleTest, OfShadowMapsAreMapsAndWhatIsDerivedFromThemFilters) {
 TEST_F(PassRoleTest, TimesAreSplitByThemIntoAllOfTheFrame) {
   const scene::Scene scene = asset("cornell_box");
   render::Renderer renderer(device(), scene);
-  renderer.configure(settings(48, 32, Term::direct, {quick("savsm")}));
+  renderer.configure(settings(64, 48, Term::direct, {quick("savsm")}));
   renderer.setCamera(renderer.pose().cameras.at(0));
   const render::FrameStats stats = render::measure(renderer, 1, 1);
   const bench::CostSplit split = bench::costSplit(stats);

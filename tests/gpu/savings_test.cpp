@@ -31,7 +31,7 @@ class SavingsTest : public RenderTest {
 
   static std::vector<SavingResult> savings(render::Renderer& renderer, const std::string& name, int frames) {
     return bench::measureSavings(renderer, renderer.pose().cameras.at(0),
-                                 settings(64, 48, Term::final, {quick(name)}), nullptr,
+                                 settings(64, 48, Term::final, {smallest(name)}), nullptr,
                                  {.frames = frames, .warmup = 0});
   }
 

@@ -18,7 +18,7 @@ TEST_F(TechniqueTest, EveryTechniqueAnswersEveryLightAlone) {
   for (const std::string& name : techniquesAnswering(Term::visibility)) {
     for (size_t light = 0; light < renderer.pose().lights.size(); ++light) {
       SCOPED_TRACE(name + ", light " + renderer.pose().lightNames[light]);
-      const Image v = picture(renderer, settings(96, 64, Term::visibility, {quick(name)}, int(light)));
+      const Image v = picture(renderer, settings(64, 48, Term::visibility, {smallest(name)}, int(light)));
       expectWithin(v, 0, 1);
       EXPECT_GT(mean(v), 0.3) << "mostly lit";
       EXPECT_LT(mean(v), 0.9999) << "something casts a shadow";
@@ -55,10 +55,10 @@ TEST_F(TechniqueTest, LightsTogetherAreTheSumOfTheLightsAlone) {
     if (std::find(names.begin(), names.end(), name) == names.end()) names.push_back(name);
   for (const std::string& name : names) {
     SCOPED_TRACE(name);
-    const Image together = picture(renderer, settings(64, 48, Term::direct, {quick(name)}));
+    const Image together = picture(renderer, settings(64, 48, Term::direct, {smallest(name)}));
     Image sum(64, 48, {"R", "G", "B"});
     for (size_t light = 0; light < renderer.pose().lights.size(); ++light) {
-      const Image alone = picture(renderer, settings(64, 48, Term::direct, {quick(name)}, int(light)));
+      const Image alone = picture(renderer, settings(64, 48, Term::direct, {smallest(name)}, int(light)));
       for (size_t i = 0; i < sum.data().size(); ++i) sum.data()[i] += alone.data()[i];
     }
     expectWithin(together, 0, 1e6f);
@@ -73,7 +73,7 @@ TEST_F(TechniqueTest, ShadowsOnlyTakeLightAway) {
   const Image unshadowed = picture(renderer, settings(64, 48, Term::direct));
   for (const std::string& name : techniquesAnswering(Term::visibility)) {
     if (contains(registry().find(name).info->terms, Term::direct)) continue;  // does not use core's L_u
-    const Image shadowed = picture(renderer, settings(64, 48, Term::direct, {quick(name)}));
+    const Image shadowed = picture(renderer, settings(64, 48, Term::direct, {smallest(name)}));
     int brighter = 0;
     for (size_t i = 0; i < shadowed.data().size(); ++i)
       brighter += shadowed.data()[i] > unshadowed.data()[i] * (1 + 1e-5f);
@@ -113,7 +113,7 @@ TEST_F(TechniqueTest, ExtremeResolutionsGiveFinitePictures) {
        {std::pair(1, 1), std::pair(4096, 1), std::pair(1, 4096), std::pair(17, 3)})
     for (const auto& [name, term] : techniquesAndTerms()) {
       SCOPED_TRACE(name);
-      expectWithin(picture(renderer, settings(width, height, Term::final, {quick(name)})), 0, 1e6f);
+      expectWithin(picture(renderer, settings(width, height, Term::final, {smallest(name)})), 0, 1e6f);
     }
 }
 
@@ -142,7 +142,7 @@ TEST_F(TechniqueTest, CameraInsideAnObjectGivesAFinitePicture) {
   render::Renderer renderer(device(), scene);
   scene::CameraPose camera = renderer.pose().cameras.at(0);
   for (const auto& [name, term] : techniquesAndTerms()) {
-    renderer.configure(settings(64, 48, Term::final, {quick(name)}));
+    renderer.configure(settings(64, 48, Term::final, {smallest(name)}));
     camera.worldToView = glm::mat4(1);
     camera.worldToView[3] = glm::vec4(-renderer.pose().bounds.centre(), 1);
     renderer.setCamera(camera);

@@ -1,9 +1,11 @@
-"""The sources of a folder compile together, as a unity build has them: unity.py BUILD TARGET...
+"""The sources of a folder compile each alone and all together, of which a build does one: unity.py BUILD TARGET...
 
-No two of them give the same name to different things, not even in their unnamed namespaces: such twins are either the
-same thing, which belongs in one place, or things that deserve names of their own. Compiles nothing to the end.
+Alone, each includes what it needs. Together, as a unity build has them, no two give the same name to different things, not even
+in their unnamed namespaces: such twins are either the same thing, which belongs in one place, or things that deserve names of
+their own. Compiles nothing to the end.
 """
 import json
+import os
 import pathlib
 import re
 import shlex
@@ -16,9 +18,9 @@ build, targets = pathlib.Path(sys.argv[1]), sys.argv[2:]
 
 
 def sources_of(target, commands):
-    """The commands of a target's own sources."""
+    """The commands of a target's sources, those that the build has made of several among them."""
     own = [c for c in commands if f"CMakeFiles/{target}.dir/" in c["command"].split(" -c ")[0].split(" -o ")[-1]]
-    return [c for c in own if not pathlib.Path(c["file"]).is_relative_to(build)]
+    return [c for c in own if "/Unity/" in c["file"] or not pathlib.Path(c["file"]).is_relative_to(build)]
 
 
 def flags(command):
@@ -33,31 +35,42 @@ def flags(command):
     return kept
 
 
-def problems(group):
-    """What the compiler says of sources that are one."""
+def errors(command, *arguments):
+    """What the compiler says of a source with the flags of a command."""
+    run = subprocess.run([*flags(command), "-fsyntax-only", *arguments], cwd=command["directory"], capture_output=True, text=True)
+    return [line for line in run.stderr.splitlines() if re.search(r"\berror:", line)] if run.returncode else []
+
+
+def together(group):
+    """Errors of sources that are one."""
     with tempfile.NamedTemporaryFile("w", suffix=".cpp") as unit:
         unit.write("".join(f'#include "{command["file"]}"\n' for command in group))
         unit.flush()
-        quiet = ["-Wno-subobject-linkage"] if "g++" in flags(group[0])[0] or "/c++" in flags(group[0])[0] else []
-        run = subprocess.run([*flags(group[0]), *quiet, "-fsyntax-only", unit.name], cwd=group[0]["directory"],
-                             capture_output=True, text=True)
-        return [line for line in run.stderr.splitlines() if re.search(r"\berror:", line)] if run.returncode else []
+        gcc = "g++" in flags(group[0])[0] or "/c++" in flags(group[0])[0]
+        return errors(group[0], *(["-Wno-subobject-linkage"] if gcc else []), unit.name)
+
+
+def alone(source):
+    """Errors of a source that the build includes in another one."""
+    command, file = source
+    return errors(command, file)
 
 
 commands = json.loads((build / "compile_commands.json").read_text())
-if any("/Unity/unity_" in command["file"] for command in commands):
-    print("this is a unity build, which says so itself")
-    sys.exit(77)
-groups = []
+sources, groups = [], []
 for name in targets:
     files = sources_of(name, commands)
     if not files:
         sys.exit(f"{name}: no sources in compile_commands.json")
     folders = {}
-    for file in files:
-        folders.setdefault(pathlib.Path(file["file"]).parent, []).append(file)
-    groups += folders.values()
-with ThreadPoolExecutor(2) as pool:
-    found = [line for lines in pool.map(problems, groups) for line in lines]
-print("\n".join(found) or f"{len(groups)} folders of sources compile")
-sys.exit(bool(found))
+    for command in files:
+        if "/Unity/" in command["file"]:
+            united = re.findall(r'^#include "(.+)"', pathlib.Path(command["file"]).read_text(), re.MULTILINE)
+            sources += [(command, file) for file in united]
+        else:
+            folders.setdefault(pathlib.Path(command["file"]).parent, []).append(command)
+    groups += [group for group in folders.values() if len(group) > 1]
+with ThreadPoolExecutor(os.cpu_count()) as pool:
+    found = [line for lines in [*pool.map(alone, sources), *pool.map(together, groups)] for line in lines]
+print("\n".join(found) or f"{len(sources)} sources compile alone, {len(groups)} folders of sources together")
+sys.exit(bool(found) or not (sources or groups))

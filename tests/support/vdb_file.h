@@ -34,6 +34,13 @@ class VdbFile : public SceneFiles {
     return grid;
   }
 
+  /// A grid without voxels, of the type that OpenVDB calls so. The library makes it, since each type of tree
+  /// that a test makes itself takes seconds to compile.
+  static openvdb::GridBase::Ptr emptyGrid(const std::string& type) {
+    openvdb::initialize();
+    return openvdb::GridBase::createGrid(type);
+  }
+
   std::string error(const scene::GridLimits& limits = {}) const {
     try {
       scene::readDensityGrid(file(), limits);

@@ -90,7 +90,7 @@ TEST_F(VdbFile, IsRefusedWithWhatWouldBeAccepted) {
   EXPECT_THAT(error(), HasSubstr("a density of nan"));
   write(openvdb::FloatGrid::create(0.f));
   EXPECT_THAT(error(), HasSubstr("no voxel that is set"));
-  write(openvdb::Vec3SGrid::create());
+  write(emptyGrid("Tree_vec3s_5_4_3"));
   EXPECT_THAT(error(), HasSubstr("no grid of floats"));
 }
 
