@@ -1,6 +1,7 @@
 # limn_embed(TARGET FUNCTION ROOT FILES...): compiles text files into TARGET behind `FUNCTION()`.
 # limn_interface_hash(TARGET FUNCTION): compiles into TARGET, behind `FUNCTION()`, a hash of limn's interface as it is now (module_headers.py).
-# limn_add_technique(NAME [FOLDER]): builds the *.cpp and *.glsl of FOLDER (default: the current one) to lib/limn/techniques.
+# limn_add_technique(NAME [FOLDER]): builds the *.cpp and *.glsl of FOLDER (default: the current one) to lib/limn/techniques,
+# as Release where no build type is chosen.
 # Where the folder has a technique.cmake, it is included afterwards: it may link technique_NAME to further libraries.
 # All are installed, so that an out-of-tree technique is built by the same call.
 #
@@ -49,6 +50,11 @@ function(limn_add_technique name)
   add_library(technique_${name} MODULE ${sources})
   target_link_libraries(technique_${name} PRIVATE limn::limn)
   target_compile_definitions(technique_${name} PRIVATE LIMN_TECHNIQUE_ID=${name})
+  if(NOT CMAKE_BUILD_TYPE AND NOT CMAKE_CONFIGURATION_TYPES)
+    # CMake would not optimise, and the technique's times would not be comparable with those of limn's own.
+    separate_arguments(release UNIX_COMMAND "${CMAKE_CXX_FLAGS_RELEASE}")
+    target_compile_options(technique_${name} PRIVATE ${release})
+  endif()
   set_target_properties(technique_${name} PROPERTIES PREFIX "" OUTPUT_NAME ${name}
     CXX_VISIBILITY_PRESET hidden VISIBILITY_INLINES_HIDDEN ON
     # One path for the built and the installed module: CMake fills up a shorter path of its own with empty entries.

@@ -1,6 +1,7 @@
 #include "apps/limn/brdf_fits.h"
 
 #include <fmt/format.h>
+#include <fmt/ranges.h>
 
 #include <algorithm>
 #include <array>
@@ -59,6 +60,14 @@ const FitRow& rowNamed(const std::array<FitRow, count>& rows, const std::string&
   }
   throw UsageError(fmt::format("{} '{}' is not accepted{}; known are {}", flag, oneLine(name, 40),
                                didYouMean(name, known), joined(known)));
+}
+
+/// The names as help and completion have choices.
+template <class FitRow, std::size_t count>
+std::string bracedNames(const std::array<FitRow, count>& rows) {
+  std::vector<std::string> names;
+  for (const FitRow& row : rows) names.emplace_back(row.name);
+  return fmt::format("{{{}}}", fmt::join(names, ","));
 }
 
 struct BrdfFitsArguments {
@@ -214,7 +223,8 @@ std::string kindsHelp() {
 std::function<int()> addBrdfFit(CLI::App& command) {
   auto options = std::make_shared<BrdfFitsArguments>();
   options->choice.addTo(command);
-  command.add_option("--fit", options->kind, "Kind of fit, see below; without it all kinds");
+  command.add_option("--fit", options->kind, "Kind of fit, see below; without it all kinds")
+      ->type_name(bracedNames(kKinds));
   command
       .add_option("--texels", options->texels,
                   fmt::format("Texels along an axis of a factor; svd has {} at most", brdf::kMostSvdTexels))
@@ -227,7 +237,8 @@ std::function<int()> addBrdfFit(CLI::App& command) {
   command.add_flag("--no-floor", options->noFloor, "Fit the product alone, without a diffuse part beside it");
   command.add_flag("--no-refine", options->noRefine, "Keep the least squares of the logarithms");
   command.add_flag("--no-warp", options->noWarp, "Coordinates of pqp_disc, dfg_disc and tables as published");
-  command.add_option("--format", options->format, "Format of the tables: half or float32")
+  command.add_option("--format", options->format, "Format of the tables")
+      ->type_name(bracedNames(kFormats))
       ->capture_default_str();
   command.add_flag("--json", options->json, "Print JSON instead of a table");
   command.footer(kindsHelp());

@@ -292,7 +292,9 @@ Action addRenderCommand(CLI::App& command) {
       ->capture_default_str()
       ->check(realRange(0.001, 1e5));
   options->tone.addTo(command);
-  command.add_option("--repeat", options->repeat, "After the picture, time this many frames")
+  command
+      .add_option("--repeat", options->repeat,
+                  "After the picture, time this many frames (with --stats 10 by default)")
       ->check(CLI::Range(1, 100000));
   auto* dynamicFlag = command.add_flag("--dynamic", options->dynamicFrames,
                                        "Compute everything again in each timed frame (default)");
@@ -303,9 +305,9 @@ Action addRenderCommand(CLI::App& command) {
                   "Picture: .exr (linear, with depth, id, albedo, normal) or .png; with --frames also a "
                   "movie: .mp4, .webm or .gif, which needs the program ffmpeg")
       ->required();
-  command.add_flag(
-      "--explain", options->explain,
-      "Print for every pass whether it was run, cached or left out and why, with memory and time");
+  command.add_flag("--explain", options->explain,
+                   "Print for every pass whether it was run, cached or left out and why, with its memory, "
+                   "and with its time where frames are timed (--repeat)");
   command.add_option("--stats", options->stats, "Write times and memory to this JSON file");
   command.add_option("--graph", options->graph, "Write the frame graph to this Graphviz file");
   command.add_option("--shaders", options->shaders,

@@ -26,6 +26,15 @@ void checkCommand(const CLI::App& limn, const std::string& name) {
                          limn::joined(known));
 }
 
+/// Returns the command whose arguments were read last, with the program's name before it.
+std::string chosenCommand(const CLI::App& program) {
+  std::string name = program.get_name();
+  for (std::vector<CLI::App*> chosen = program.get_subcommands(); !chosen.empty();
+       chosen = chosen.back()->get_subcommands())
+    name += " " + chosen.back()->get_name();
+  return name;
+}
+
 /// Throws Error unless all that was printed has been written. Of what failed before the end only the stream's
 /// mark is left.
 void checkStandardOutput() {
@@ -41,8 +50,8 @@ int main(int argc, char** argv) {
   CLI::App limn("limn: real-time shadows and global illumination, with their error and their cost", "limn");
   limn.set_version_flag("--version", limn::version());
   limn.require_subcommand(1);
-  limn.failure_message([](const CLI::App*, const CLI::Error& error) {
-    return std::string("limn: ") + error.what() + "; see limn --help\n";
+  limn.failure_message([](const CLI::App* program, const CLI::Error& error) {
+    return std::string("limn: ") + error.what() + "; see " + chosenCommand(*program) + " --help\n";
   });
 
   using namespace limn::app;

@@ -112,12 +112,23 @@ void addTechniqueFlags(CLI::App& command, session::TechniqueChoice& choice) {
 }
 
 void addDeviceFlags(CLI::App& command, int& device, bool& debug) {
-  command.add_option("--device", device, "EGL device index, see limn info")->check(CLI::Range(0, 255));
+  command
+      .add_option(
+          "--device", device,
+          "EGL device, by its index in limn info; default: the first GPU with OpenGL 4.5, or else the "
+          "processor")
+      ->check(CLI::Range(0, 255));
   command.add_flag("--gl-debug", debug, "Use an OpenGL debug context: driver errors end the run");
 }
 
 void BackendOptions::addTo(CLI::App& command) {
-  command.add_option("--backend", backend, "egl or osmesa")->capture_default_str();
+  command
+      .add_option(
+          "--backend", backend,
+          "Where OpenGL comes from; osmesa: always the processor; glfw: a hidden window, which needs a "
+          "display")
+      ->type_name("{egl,osmesa,glfw}")
+      ->capture_default_str();
   addDeviceFlags(command, device, debug);
 }
 

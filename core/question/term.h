@@ -1,7 +1,7 @@
 // Declares the terms of the rendering equation as data: the name of each, its light paths, which techniques
 // may answer it and what can be requested of its reference. Names, help texts, menus, `limn list`, which
 // techniques can be combined and which requests the reference accepts are derived from here. A new term is an
-// enumerator and a row; core/render/renderer.cpp and core/reference compute it.
+// enumerator and a row; core/render/build_graph.cpp and core/reference compute it.
 #pragma once
 
 #include <cstdint>

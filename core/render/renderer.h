@@ -1,8 +1,8 @@
 // Puts a frame together: scene data, G-buffer, the techniques that were asked for, and core's answers to the
-// terms that no technique claims (V = 1, the other terms 0), all as one frame graph.
+// terms that no technique claims (TermInfo::unanswered), all as one frame graph.
 //
-//     L = T_cam (L_e + sum over lights of L_u V T_l  (or a technique's `direct`)  + indirect + caustic +
-//     specular + background) + media
+//     L = T_cam (L_e + sum over lights of L_u V W T_l  (or a technique's `direct`)  + environment + indirect
+//     + subsurface + caustic + specular + background) + media
 //
 // T_l and T_cam are the medium's transmittance from light l to the surface and from there to the camera. The
 // pictures of single terms hold T_cam too: they sum to the final one.

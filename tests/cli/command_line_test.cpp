@@ -30,9 +30,10 @@ std::vector<std::string> commandsOfHelp() {
 }
 
 TEST(CommandLine, WrongUsageIsOneLine) {
-  expectRefused(limn({}), 2, {"subcommand", "--help"});
+  expectRefused(limn({}), 2, {"subcommand", "; see limn --help"});
   expectRefused(limn({"rendr"}), 2, {"'rendr'", "did you mean render", "bench"});
-  expectRefused(limn({"render"}), 2, {"scene"});
+  expectRefused(limn({"render"}), 2, {"scene", "; see limn render --help"});
+  expectRefused(limn({"brdf", "fit", "--texels", "1"}), 2, {"--texels", "; see limn brdf fit --help"});
   expectRefused(limn({"render", kCornellBox, "--out", "a.png", "--fov", "200"}), 2, {"--fov", "200", "179"});
   expectRefused(limn({"render", kCornellBox, "--out", "a.png", "--colour"}), 2, {"--colour"});
 }

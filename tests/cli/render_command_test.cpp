@@ -45,6 +45,8 @@ TEST_F(Render, WritesAPictureWithChannelsAndStatistics) {
   EXPECT_EQ(parsed["size"], nlohmann::json::array({32, 24}));
   EXPECT_EQ(parsed["frame_ms"]["n"], 2);
   EXPECT_FALSE(parsed["passes"].empty());
+  EXPECT_THAT(outcome.out, testing::ContainsRegex("\nrun +core +gbuffer +[0-9.]+ +[0-9.]+ +\n"))
+      << "memory and time, as README.md says";
 }
 
 TEST_F(Render, SaysWhatItWroteUnlessQuiet) {

@@ -33,6 +33,11 @@ documented = re.search(r"LIMN_TECHNIQUE_PATH=\$HOME/my_techniques/(\S+)", sectio
 build(scratch, scratch / "build")
 path = {"LIMN_TECHNIQUE_PATH": str(scratch / documented)}
 
+# It is optimised as limn is, though neither names a build type: its times stand beside those of limn's own.
+run("cmake", scratch / "build", "-DCMAKE_EXPORT_COMPILE_COMMANDS=ON")
+commands = [entry["command"] for entry in json.loads((scratch / "build/compile_commands.json").read_text())]
+check(commands and all(" -O3 " in command for command in commands), f"compiled without optimisation: {commands}")
+
 # A folder without sources is an error when the project is configured, not when its module is used.
 nothing = scratch / "nothing"
 nothing.mkdir()
