@@ -47,18 +47,22 @@ vec4 pattern_mean(ivec2 pixel, uvec4 own, ivec2 axis) {
   bool narrow = pattern_packed_narrow(gathered_here.a);
   float weights = pattern_weight(side, narrow, 0);
   vec3 sum = weights * gathered_here.rgb;
+  vec3 least = gathered_here.rgb;
+  vec3 most = least;
   for (int t = 1, end = pattern_end(side, narrow); t <= end; ++t) {
     bool after = counts(centre, pixel + t * axis);
     bool before = counts(centre, pixel - t * axis);
     if (!after && !before) break;
+    vec3 one = texelFetch(gathered, after ? pixel + t * axis : pixel - t * axis, 0).rgb;
+    vec3 other = after && before ? texelFetch(gathered, pixel - t * axis, 0).rgb : one;
     float weight = pattern_weight(side, narrow, t);
-    vec3 pair = vec3(0.0);
-    if (after) pair += texelFetch(gathered, pixel + t * axis, 0).rgb;
-    if (before) pair += texelFetch(gathered, pixel - t * axis, 0).rgb;
-    sum += weight * (after && before ? pair : 2.0 * pair);
+    sum += weight * (one + other);
     weights += 2.0 * weight;
+    least = min(least, min(one, other));
+    most = max(most, max(one, other));
   }
-  vec3 mean = mix(gathered_here.rgb, max(sum / weights, vec3(0.0)), pattern_packed_shares(gathered_here.a));
+  // Weights below 0 would let it pass all that it is the mean of.
+  vec3 mean = mix(gathered_here.rgb, clamp(sum / weights, least, most), pattern_packed_shares(gathered_here.a));
   return vec4(mean, gathered_here.a);
 }
 
