@@ -124,7 +124,8 @@ TEST_F(ShaderLibraryTest, partsForCppAreSkipped) {
 TEST_F(ShaderLibraryTest, warningsAreErrorsInADebugContext) {
   if (!device().software()) GTEST_SKIP() << "what a driver warns of is its own choice";
   shaders().mount("techniques/test/", kSources);
-  // The driver gives no warnings of a text that its cache on disk holds, from an earlier run or another backend.
+  // The driver gives no warnings of a text that its cache on disk holds, from an earlier run or another
+  // backend.
   const auto run = std::chrono::system_clock::now().time_since_epoch().count();
   EXPECT_THAT(errorOf({{"techniques/test/warns.comp.glsl"}, {{"LIMN_RUN", std::to_string(run)}}}),
               HasSubstr("techniques/test/warns.comp.glsl:3: "));
