@@ -37,33 +37,51 @@ struct Maps {
   }
 };
 
+/// Holds what a renderer has of a scene while it asks for shadow maps and executes their graph.
+struct Asking {
+  scene::GpuScene gpuScene;
+  FrameServices services;
+  shadow::ShadowMapService& service;
+  frame::ResourcePool pool;
+  frame::FrameGraph graph;
+  FrameServices::Building building;
+
+  Asking(gpu::Device& device, const scene::Scene& scene, const scene::Pose& pose,
+         const scene::CameraPose& camera)
+      : gpuScene(device, scene),
+        service(services.add<shadow::ShadowMapService>(device, gpuScene)),
+        pool(device),
+        building(begin(pose, camera)) {}
+  ~Asking() { gpuScene.forget(); }
+
+ private:
+  FrameServices::Building begin(const scene::Pose& pose, const scene::CameraPose& camera) {
+    gpuScene.update(pose, camera, {64, 64}, 0);
+    return services.begin(graph, gpuScene.import(graph), pose);
+  }
+};
+
 class ShadowMapTest : public GlTest {
  protected:
   Maps draw(const scene::Scene& scene, const scene::Pose& pose, std::vector<uint32_t> lights,
             const shadow::ShadowMapDesc& desc) {
-    scene::GpuScene gpuScene(device(), scene);
-    gpuScene.update(pose, scene::frameBounds(pose.bounds), {64, 64}, 0);
-    FrameServices services;
-    auto& service = services.add<shadow::ShadowMapService>(device(), gpuScene);
-    frame::ResourcePool pool(device());
-    frame::FrameGraph graph;
-    const auto building = services.begin(graph, gpuScene.import(graph), pose);
-    const shadow::ShadowMaps maps = service.request(lights, desc);
-    graph.output(maps.depth);
-    graph.prepare(device(), shaders(), pool);
-    graph.execute();
+    Asking asking(device(), scene, pose, scene::frameBounds(pose.bounds));
+    const shadow::ShadowMaps maps = asking.service.request(lights, desc);
+    asking.graph.output(maps.depth);
+    asking.graph.prepare(device(), shaders(), asking.pool);
+    asking.graph.execute();
     Maps out;
     out.size = desc.size;
-    out.stats = service.stats();
+    out.stats = asking.service.stats();
     out.views.resize(static_cast<size_t>(maps.layers));
     out.depth.resize(static_cast<size_t>(maps.layers * desc.size * desc.size));
-    const gpu::Buffer& views = graph.buffer(maps.views);
+    const gpu::Buffer& views = asking.graph.buffer(maps.views);
     views.read(0, out.views.data(), views.size());
-    const gpu::Buffer& shadowLights = graph.buffer(maps.lights);
+    const gpu::Buffer& shadowLights = asking.graph.buffer(maps.lights);
     out.lights.resize(shadowLights.size() / sizeof(glsl::ShadowLight));
     shadowLights.read(0, out.lights.data(), shadowLights.size());
-    graph.texture(maps.depth).read(0, GL_RED, GL_FLOAT, out.depth.data(), out.depth.size() * sizeof(float));
-    gpuScene.forget();
+    asking.graph.texture(maps.depth)
+        .read(0, GL_RED, GL_FLOAT, out.depth.data(), out.depth.size() * sizeof(float));
     return out;
   }
 };
@@ -277,43 +295,37 @@ TEST_F(ShadowMapTest, StaticMapsAreCachedAndSharedAndFollowWhatMoves) {
   scene::Pose pose;
   addInstance(scene, pose, 0);
   addLight(pose, rectangleLight({0, 4, 0}, {0, -1, 0}, 2, 1));
-  scene::GpuScene gpuScene(device(), scene);
   const auto camera = scene::frameBounds(pose.bounds);
-  gpuScene.update(pose, camera, {64, 64}, 0);
-  FrameServices services;
-  auto& service = services.add<shadow::ShadowMapService>(device(), gpuScene);
-  frame::ResourcePool pool(device());
-  frame::FrameGraph graph;
-  const auto building = services.begin(graph, gpuScene.import(graph), pose);
+  Asking asking(device(), scene, pose, camera);
   const std::vector<uint32_t> lights{0};
-  const shadow::ShadowMaps maps = service.request(lights, {.size = 64});
-  EXPECT_EQ(service.request(lights, {.size = 64}).depth, maps.depth);
-  const shadow::ShadowMaps small = service.request(lights, {.size = 16});
+  const shadow::ShadowMaps maps = asking.service.request(lights, {.size = 64});
+  EXPECT_EQ(asking.service.request(lights, {.size = 64}).depth, maps.depth);
+  const shadow::ShadowMaps small = asking.service.request(lights, {.size = 16});
   EXPECT_NE(small.depth, maps.depth);
-  EXPECT_EQ(service.request(lights, {.size = 16, .views = 0}).depth, small.depth) << "too small to be cut";
-  EXPECT_NE(service.request(lights, {.size = 16, .views = 2}).depth, small.depth);
-  graph.output(maps.depth);
-  graph.prepare(device(), shaders(), pool);
+  EXPECT_EQ(asking.service.request(lights, {.size = 16, .views = 0}).depth, small.depth)
+      << "too small to be cut";
+  EXPECT_NE(asking.service.request(lights, {.size = 16, .views = 2}).depth, small.depth);
+  asking.graph.output(maps.depth);
+  asking.graph.prepare(device(), shaders(), asking.pool);
   const auto state = [&] {
-    graph.execute();
-    for (const frame::PassReport& report : graph.explain()) {
+    asking.graph.execute();
+    for (const frame::PassReport& report : asking.graph.explain()) {
       if (report.name == "shadow maps") return report.state;
     }
     return frame::PassState::leftOut;
   };
   EXPECT_EQ(state(), frame::PassState::run);
   EXPECT_EQ(state(), frame::PassState::cached);
-  gpuScene.update(pose, scene::lookAt({1, 2, 3}, {0, 0, 0}, 0.5f), {64, 64}, 1);
-  EXPECT_FALSE(services.update(graph, pose));
+  asking.gpuScene.update(pose, scene::lookAt({1, 2, 3}, {0, 0, 0}, 0.5f), {64, 64}, 1);
+  EXPECT_FALSE(asking.services.update(asking.graph, pose));
   EXPECT_EQ(state(), frame::PassState::cached);
   pose.lights[0].position.x = 0.5f;
-  gpuScene.update(pose, camera, {64, 64}, 2);
-  EXPECT_FALSE(services.update(graph, pose));
+  asking.gpuScene.update(pose, camera, {64, 64}, 2);
+  EXPECT_FALSE(asking.services.update(asking.graph, pose));
   EXPECT_EQ(state(), frame::PassState::run);
   pose.lights[0].position.y = 0.1f;
-  gpuScene.update(pose, camera, {64, 64}, 3);
-  EXPECT_TRUE(services.update(graph, pose)) << "one map is not enough any more";
-  gpuScene.forget();
+  asking.gpuScene.update(pose, camera, {64, 64}, 3);
+  EXPECT_TRUE(asking.services.update(asking.graph, pose)) << "one map is not enough any more";
 }
 
 /// Cubes from one point are whole however they are fitted; from samples each face follows the view.
@@ -323,20 +335,15 @@ TEST_F(ShadowMapTest, MapsThatDoNotFollowTheViewAreSharedHoweverTheyAreFitted) {
   scene::Pose pose;
   addInstance(scene, pose, 0);
   addLight(pose, pointLight({0, 1, 0}));
-  scene::GpuScene gpuScene(device(), scene);
-  gpuScene.update(pose, scene::frameBounds(pose.bounds), {64, 64}, 0);
-  FrameServices services;
-  auto& service = services.add<shadow::ShadowMapService>(device(), gpuScene);
-  frame::FrameGraph graph;
-  const auto building = services.begin(graph, gpuScene.import(graph), pose);
+  Asking asking(device(), scene, pose, scene::frameBounds(pose.bounds));
   const std::vector<uint32_t> lights{0};
   const auto view = shadow::MapFit::view;
-  const shadow::ShadowMaps whole = service.request(lights, {.size = 16});
-  EXPECT_EQ(service.request(lights, {.size = 16, .fit = view, .lightSize = 0.1f}).depth, whole.depth);
-  const shadow::ShadowMaps sampled = service.request(lights, {.size = 16, .samples = {{0, 0}, {1, 1}}});
-  EXPECT_NE(service.request(lights, {.size = 16, .samples = {{0, 0}, {1, 1}}, .fit = view}).depth,
+  const shadow::ShadowMaps whole = asking.service.request(lights, {.size = 16});
+  EXPECT_EQ(asking.service.request(lights, {.size = 16, .fit = view, .lightSize = 0.1f}).depth, whole.depth);
+  const shadow::ShadowMaps sampled =
+      asking.service.request(lights, {.size = 16, .samples = {{0, 0}, {1, 1}}});
+  EXPECT_NE(asking.service.request(lights, {.size = 16, .samples = {{0, 0}, {1, 1}}, .fit = view}).depth,
             sampled.depth);
-  gpuScene.forget();
 }
 
 /// Half cubes do not follow the view. What the light is cut by is then all of the scene, from the request on:
@@ -350,25 +357,18 @@ TEST_F(ShadowMapTest, LightsWithARangeAreCutTheSameInEveryFrame) {
   addLight(pose, rectangleLight({0, 1, 0}, {0, -1, 0}, 0.5f, 0.5f));
   pose.lights[0].range = 6;
   const shadow::ShadowMapDesc desc{.size = 64, .views = 0, .fit = shadow::MapFit::view};
-  scene::GpuScene gpuScene(device(), scene);
   const scene::CameraPose camera = scene::frameBounds(pose.bounds);
-  gpuScene.update(pose, camera, {64, 64}, 0);
-  FrameServices services;
-  auto& service = services.add<shadow::ShadowMapService>(device(), gpuScene);
-  frame::ResourcePool pool(device());
-  frame::FrameGraph graph;
-  const auto building = services.begin(graph, gpuScene.import(graph), pose);
+  Asking asking(device(), scene, pose, camera);
   const std::vector<uint32_t> lights{0};
-  const shadow::ShadowMaps maps = service.request(lights, desc);
-  EXPECT_EQ(service.layersOf(0, desc), 20);
+  const shadow::ShadowMaps maps = asking.service.request(lights, desc);
+  EXPECT_EQ(asking.service.layersOf(0, desc), 20);
   EXPECT_EQ(maps.layers, 5);
-  graph.output(maps.depth);
-  graph.prepare(device(), shaders(), pool);
-  graph.execute();
+  asking.graph.output(maps.depth);
+  asking.graph.prepare(device(), shaders(), asking.pool);
+  asking.graph.execute();
   pose.lights[0].position.x += 0.01f;
-  gpuScene.update(pose, camera, {64, 64}, 1);
-  EXPECT_FALSE(services.update(graph, pose));
-  gpuScene.forget();
+  asking.gpuScene.update(pose, camera, {64, 64}, 1);
+  EXPECT_FALSE(asking.services.update(asking.graph, pose));
 }
 
 TEST_F(ShadowMapTest, MapsFittedToTheViewFollowTheCamera) {
@@ -380,39 +380,33 @@ TEST_F(ShadowMapTest, MapsFittedToTheViewFollowTheCamera) {
   addInstance(scene, pose, 1, at(0, 1, 0));    // over what the camera sees
   addInstance(scene, pose, 1, at(12, 1, 12));  // far from it
   addLight(pose, rectangleLight({0, 8, 0}, {0, -1, 0}, 2, 1));
-  scene::GpuScene gpuScene(device(), scene);
   const auto look = [](float x) { return scene::lookAt({x, 2, 3}, {x, 0, 0}, 0.5f); };
-  gpuScene.update(pose, look(0), {64, 64}, 0);
-  FrameServices services;
-  auto& service = services.add<shadow::ShadowMapService>(device(), gpuScene);
-  frame::ResourcePool pool(device());
-  frame::FrameGraph graph;
-  const auto building = services.begin(graph, gpuScene.import(graph), pose);
+  Asking asking(device(), scene, pose, look(0));
   const std::vector<uint32_t> lights{0};
-  const shadow::ShadowMaps whole = service.request(lights, {.size = 64});
-  const shadow::ShadowMaps cut = service.request(lights, {.size = 64, .fit = shadow::MapFit::view});
+  const shadow::ShadowMaps whole = asking.service.request(lights, {.size = 64});
+  const shadow::ShadowMaps cut = asking.service.request(lights, {.size = 64, .fit = shadow::MapFit::view});
   ASSERT_NE(cut.depth, whole.depth);
-  graph.output(whole.depth);
-  graph.output(cut.depth);
-  graph.prepare(device(), shaders(), pool);
+  asking.graph.output(whole.depth);
+  asking.graph.output(cut.depth);
+  asking.graph.prepare(device(), shaders(), asking.pool);
   const auto view = [&](const shadow::ShadowMaps& maps) {
     glsl::ShadowView read;
-    graph.buffer(maps.views).read(0, &read, sizeof(read));
+    asking.graph.buffer(maps.views).read(0, &read, sizeof(read));
     return read;
   };
   const auto drawn = [&](float x, uint32_t frame) {
-    gpuScene.update(pose, look(x), {64, 64}, frame);
-    EXPECT_FALSE(services.update(graph, pose));
-    graph.execute();
+    asking.gpuScene.update(pose, look(x), {64, 64}, frame);
+    EXPECT_FALSE(asking.services.update(asking.graph, pose));
+    asking.graph.execute();
     int passes = 0;
-    for (const frame::PassReport& report : graph.explain())
+    for (const frame::PassReport& report : asking.graph.explain())
       passes += report.name.starts_with("shadow maps") && report.state == frame::PassState::run ? 1 : 0;
     return passes;
   };
   EXPECT_EQ(drawn(0, 1), 2);
   EXPECT_GT(view(cut).scale, 3 * view(whole).scale);
   std::vector<float> depth(64 * 64);
-  graph.texture(cut.depth).read(0, GL_RED, GL_FLOAT, depth.data(), depth.size() * sizeof(float));
+  asking.graph.texture(cut.depth).read(0, GL_RED, GL_FLOAT, depth.data(), depth.size() * sizeof(float));
   const glsl::ShadowPoint ball = glsl::shadow_project(view(cut), {0, 1.3f, 0});
   ASSERT_TRUE(glsl::shadow_inside(ball));
   const auto texel = static_cast<size_t>(ball.uv.y * 64) * 64 + static_cast<size_t>(ball.uv.x * 64);
@@ -420,7 +414,6 @@ TEST_F(ShadowMapTest, MapsFittedToTheViewFollowTheCamera) {
   EXPECT_EQ(drawn(0, 2), 0);
   EXPECT_EQ(drawn(0.001f, 3), 0) << "rounded: as before";
   EXPECT_EQ(drawn(2, 4), 1) << "the map of the whole scene stays";
-  gpuScene.forget();
 }
 
 TEST_F(ShadowMapTest, DerivedMapsAreKeptWhereTheMapsAre) {
@@ -504,20 +497,14 @@ TEST_F(ShadowMapTest, ImpossibleRequestsAreRefused) {
   scene::Pose pose;
   addInstance(scene, pose, 0);
   addLight(pose, pointLight({0, 4, 0}));
-  scene::GpuScene gpuScene(device(), scene);
-  gpuScene.update(pose, scene::frameBounds(pose.bounds), {64, 64}, 0);
-  FrameServices services;
-  auto& service = services.add<shadow::ShadowMapService>(device(), gpuScene);
-  frame::FrameGraph graph;
-  const auto building = services.begin(graph, gpuScene.import(graph), pose);
+  Asking asking(device(), scene, pose, scene::frameBounds(pose.bounds));
   const std::vector<uint32_t> light{0}, absent{1};
-  EXPECT_THROW(service.request(light, {.size = 0}), UsageError);
-  EXPECT_THROW(service.request(light, {.size = 1 << 20}), UsageError);
-  EXPECT_THROW(service.request(light, {.size = 16384}), UsageError);
-  EXPECT_NO_THROW(service.request(light, {.size = 8192})) << "3 GiB";
-  EXPECT_THROW(service.request(light, {.size = 8192, .reflective = true}), UsageError) << "6 GiB";
-  EXPECT_THROW(service.request(absent, {.size = 64}), UsageError);
-  gpuScene.forget();
+  EXPECT_THROW(asking.service.request(light, {.size = 0}), UsageError);
+  EXPECT_THROW(asking.service.request(light, {.size = 1 << 20}), UsageError);
+  EXPECT_THROW(asking.service.request(light, {.size = 16384}), UsageError);
+  EXPECT_NO_THROW(asking.service.request(light, {.size = 8192})) << "3 GiB";
+  EXPECT_THROW(asking.service.request(light, {.size = 8192, .reflective = true}), UsageError) << "6 GiB";
+  EXPECT_THROW(asking.service.request(absent, {.size = 64}), UsageError);
 }
 
 }  // namespace
