@@ -9,8 +9,8 @@ LIMN_BEGIN
 // pattern of points would take away more than it is worth, and without it the pattern shows.
 LIMN_CONST float least_patterned_reach = 0.8f;
 
-// Pixels along a side of the pattern: all of `block` where light gets nearly as far as that, and 2 where it gets less far. `reach`: of
-// each channel, pixels.
+// Pixels along a side of the pattern: all of `block` where light gets nearly as far as that, and 2 where it gets less far. `reach`:
+// of each channel, pixels.
 LIMN_FN int pattern_side(vec3 reach, int block) {
   float farthest = max(reach.x, max(reach.y, reach.z));
   if (farthest < least_patterned_reach) return 1;
