@@ -6,6 +6,7 @@
 
 #include "apps/limn/commands.h"
 #include "apps/limn/options.h"
+#include "core/bench/suite.h"
 #include "core/session/find.h"
 #include "core/technique/registry.h"
 
@@ -87,19 +88,37 @@ struct ListArguments {
   bool json = false;
 };
 
-/// What comes with limn beside its techniques.
-const std::map<std::string, std::vector<std::string> (*)()> kNames{
-    {"scenes", session::sceneNames},
-    {"environments", session::environmentNames},
-    {"suites", session::suiteNames}};
+/// What is said of each suite.
+std::map<std::string, std::string> aboutSuites() {
+  std::map<std::string, std::string> about;
+  for (const std::string& name : session::suiteNames())
+    about[name] = bench::readSuite(session::findSuite(name)).about;
+  return about;
+}
+
+/// What comes with limn beside its techniques: its names and what they are for.
+struct ListedKind {
+  std::vector<std::string> (*names)();
+  std::map<std::string, std::string> (*about)();
+};
+const std::map<std::string, ListedKind> kListedKinds{
+    {"scenes", {session::sceneNames, session::aboutScenes}},
+    {"environments", {session::environmentNames, session::aboutEnvironments}},
+    {"suites", {session::suiteNames, aboutSuites}}};
+
+void printKind(const std::string& what, const ListedKind& kind, bool json) {
+  std::map<std::string, std::string> about = kind.about();
+  nlohmann::ordered_json entries = nlohmann::ordered_json::array();
+  for (const std::string& name : kind.names()) {
+    entries.push_back({{"name", name}, {"about", about[name]}});
+    if (!json) fmt::print("{}{}{}\n", name, about[name].empty() ? "" : ": ", about[name]);
+  }
+  if (json) printAsJson({{what, entries}});
+}
 
 int runList(const ListArguments& options) {
-  if (const auto names = kNames.find(options.what); names != kNames.end()) {
-    const std::vector<std::string> found = names->second();
-    if (options.json)
-      printAsJson(nlohmann::ordered_json{{options.what, found}});
-    else
-      for (const std::string& name : found) fmt::print("{}\n", name);
+  if (const auto kind = kListedKinds.find(options.what); kind != kListedKinds.end()) {
+    printKind(kind->first, kind->second, options.json);
     return 0;
   }
   const TechniqueRegistry registry(TechniqueRegistry::defaultFolders(), warn);
@@ -112,9 +131,9 @@ int runList(const ListArguments& options) {
 Action addListCommand(CLI::App& command) {
   auto options = std::make_shared<ListArguments>();
   command
-      .add_option(
-          "what", options->what,
-          "techniques with their parameters, or the names of limn's own scenes, environments or suites")
+      .add_option("what", options->what,
+                  "techniques with their parameters, or limn's own scenes, environments or suites, and what "
+                  "each is for")
       ->check(CLI::IsMember({"techniques", "scenes", "environments", "suites"}))
       ->capture_default_str();
   command.add_flag("--json", options->json, "Print JSON");

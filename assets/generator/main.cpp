@@ -3,6 +3,9 @@
 
 #include <algorithm>
 #include <exception>
+#include <fstream>
+#include <nlohmann/json.hpp>
+#include <stdexcept>
 
 #include "assets/generator/gltf_writer.h"
 #include "assets/scenes/scenes.h"
@@ -48,6 +51,17 @@ void writeEnvironments(const std::filesystem::path& folder) {
   }
 }
 
+/// Writes what each scene and environment is for, which `limn list` prints.
+void writeAbout(const std::filesystem::path& folder) {
+  nlohmann::ordered_json scenes, environments;
+  for (const SceneEntry& entry : allScenes()) scenes[std::string(entry.name)] = entry.about;
+  for (const EnvironmentEntry& entry : allEnvironments()) environments[std::string(entry.name)] = entry.about;
+  const nlohmann::ordered_json about{{"scenes", scenes}, {"environments", environments}};
+  std::ofstream out(folder / "about.json");
+  out << about.dump(1) << '\n';
+  if (!out.flush()) throw std::runtime_error((folder / "about.json").string() + " cannot be written");
+}
+
 }  // namespace
 
 int main(int argc, char** argv) {
@@ -71,7 +85,10 @@ int main(int argc, char** argv) {
   }
   if (chosen.empty()) chosen = allScenes();
   try {
-    if (arguments.size() == 1) writeEnvironments(arguments[0]);
+    if (arguments.size() == 1) {
+      writeEnvironments(arguments[0]);
+      writeAbout(arguments[0]);
+    }
     for (const SceneEntry& entry : chosen) {
       limn::assets::Scene scene = entry.make();
       scene.name = entry.name;

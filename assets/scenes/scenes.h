@@ -75,6 +75,7 @@ Scene makeWhiteFurnace();
 struct SceneEntry {
   std::string_view name;
   Scene (*make)();
+  std::string_view about;  ///< what it is for, as in assets/README.md
 };
 
 /// Every scene of the library.
@@ -89,6 +90,7 @@ Image makeStudio();
 struct EnvironmentEntry {
   std::string_view name;
   Image (*make)();
+  std::string_view about;  ///< what it shows
 };
 
 /// Every environment map of the library.

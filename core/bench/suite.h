@@ -56,6 +56,7 @@ LIMN_API std::string rowKey(const Case& c, std::string_view renderer);
 
 struct Suite {
   std::string name;
+  std::string about;           ///< what it shows, for lists; may be empty
   double minutes = 0;          ///< 0: not given
   double stallTimeout = 1800;  ///< seconds without progress after which a case is ended; 0: never
   std::vector<Case>

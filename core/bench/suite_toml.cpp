@@ -245,12 +245,13 @@ void addOwnCases(const TomlSection& suite, std::vector<Case>& cases) {
 }
 
 Suite buildSuite(const toml::table& root, const std::string& file, bool mayInclude) {
-  const TomlSection suite(
-      file, root, "the suite",
-      {"name", "minutes", "stall_timeout", "include", "sizes", "time_size", "frames", "warmup", "turns",
-       "modes", "term", "reference", "separation_floor", "pictures", "bound", "scenes", "techniques"});
-  Suite result{suite.text(suite.require("name"), "name"), suite.real("minutes", 0, 0, 1e6),
-               suite.real("stall_timeout", 1800, 0, 1e6), includedCases(suite, mayInclude)};
+  const TomlSection suite(file, root, "the suite",
+                          {"name", "about", "minutes", "stall_timeout", "include", "sizes", "time_size",
+                           "frames", "warmup", "turns", "modes", "term", "reference", "separation_floor",
+                           "pictures", "bound", "scenes", "techniques"});
+  Suite result{suite.text(suite.require("name"), "name"), suite.text("about", ""),
+               suite.real("minutes", 0, 0, 1e6), suite.real("stall_timeout", 1800, 0, 1e6),
+               includedCases(suite, mayInclude)};
   if (suite.find("include") == nullptr || suite.find("scenes") != nullptr) addOwnCases(suite, result.cases);
   std::set<std::string> keys;
   for (const Case& c : result.cases) {

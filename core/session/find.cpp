@@ -3,10 +3,12 @@
 #include <fmt/format.h>
 
 #include <array>
+#include <nlohmann/json.hpp>
 #include <set>
 #include <system_error>
 
 #include "core/base/error.h"
+#include "core/base/file.h"
 #include "core/base/text.h"
 
 namespace limn::session {
@@ -57,6 +59,19 @@ std::vector<std::string> namesOf(const FileKind& kind) {
   return {names.begin(), names.end()};
 }
 
+/// Returns what limn-make-scenes says of scenes or environments, by name.
+std::map<std::string, std::string> aboutOf(const char* key) {
+  const fs::path file = findShared(kSceneFiles.folder, "about.json");
+  if (file.empty()) return {};
+  try {
+    return nlohmann::json::parse(readTextFile(file, 1 << 20))
+        .at(key)
+        .get<std::map<std::string, std::string>>();
+  } catch (const nlohmann::json::exception& error) {
+    throw Error(fmt::format("{}: {}", file.string(), oneLine(error.what())));
+  }
+}
+
 /// Returns the file itself, or that of the name. A folder is neither: results often go into one that has the
 /// name of what they are of.
 fs::path findFile(const FileKind& kind, const fs::path& nameOrFile) {
@@ -90,6 +105,14 @@ std::vector<std::string> environmentNames() {
 
 std::vector<std::string> suiteNames() {
   return namesOf(kSuiteFiles);
+}
+
+std::map<std::string, std::string> aboutScenes() {
+  return aboutOf("scenes");
+}
+
+std::map<std::string, std::string> aboutEnvironments() {
+  return aboutOf("environments");
 }
 
 fs::path findScene(const fs::path& nameOrFile) {

@@ -2,6 +2,7 @@
 #pragma once
 
 #include <filesystem>
+#include <map>
 #include <string>
 #include <vector>
 
@@ -30,6 +31,11 @@ LIMN_API std::filesystem::path findSuite(const std::filesystem::path& nameOrFile
 LIMN_API std::vector<std::string> sceneNames();
 LIMN_API std::vector<std::string> environmentNames();
 LIMN_API std::vector<std::string> suiteNames();
+
+/// Returns what limn's own scenes, and its environment maps, are for, by name. Empty where limn's scenes were
+/// neither built nor installed.
+LIMN_API std::map<std::string, std::string> aboutScenes();
+LIMN_API std::map<std::string, std::string> aboutEnvironments();
 
 /// Returns the path of `file` in `folder` of what was built or installed with limn; empty when it does not
 /// exist.

@@ -5,6 +5,7 @@
 
 #include <algorithm>
 #include <fstream>
+#include <map>
 #include <nlohmann/json.hpp>
 #include <regex>
 #include <set>
@@ -300,6 +301,34 @@ TEST(CommandLine, ListNamesEveryTechniqueWithItsParameters) {
     for (const auto& parameter : technique["parameters"])
       EXPECT_FALSE(parameter["doc"].get<std::string>().empty());
   }
+}
+
+/// What a list says of each name.
+std::map<std::string, std::string> listed(const std::string& what) {
+  const Outcome outcome = limn({"list", what, "--json"});
+  EXPECT_EQ(outcome.status, 0) << outcome.err;
+  std::map<std::string, std::string> about;
+  const auto parsed = nlohmann::json::parse(outcome.out);
+  for (const auto& entry : parsed[what]) about[entry["name"]] = entry["about"];
+  return about;
+}
+
+TEST(CommandLine, ListSaysWhatSuitesAndEnvironmentsAreFor) {
+  for (const char* what : {"suites", "environments"})
+    for (const auto& [name, about] : listed(what)) EXPECT_FALSE(about.empty()) << name;
+  EXPECT_THAT(limn({"list", "suites"}).out, HasSubstr("\nquick: a first try of a few minutes"));
+}
+
+TEST(CommandLine, ListSaysOfScenesWhatTheTableSays) {
+  std::map<std::string, std::string> table;
+  std::istringstream lines(contents(std::string(kSourceDir) + "/assets/README.md"));
+  const std::regex row(R"(\| (\w+) \| [^|]*\| ([^|]+) \| [^|]* \| [^|]* \|)");
+  for (std::string line; std::getline(lines, line);) {
+    std::erase(line, '`');
+    if (std::smatch cells; std::regex_match(line, cells, row)) table[cells[1]] = cells[2];
+  }
+  table.erase("scene");  // the heading
+  EXPECT_EQ(listed("scenes"), table);
 }
 
 TEST(CommandLine, InfoTellsARendererOrWhyThereIsNone) {

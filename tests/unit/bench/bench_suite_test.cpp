@@ -153,7 +153,7 @@ TEST(BenchSuite, ErrorsNameFileLineAndColumn) {
   const std::string good = "name='a'\nsizes='8x8'\n[[scenes]]\nscene='b'\n[[techniques]]\ntechnique='c'\n";
   EXPECT_EQ(parseSuite(good, "s.toml").cases.size(), 1u);
   expectUsageError("name='a'\nsize='8x8'\n",
-                   "s.toml:2:1: unknown key 'size' in the suite; known are name, minutes");
+                   "s.toml:2:1: unknown key 'size' in the suite; known are name, about, minutes");
   expectUsageError("name = \n", "s.toml:1:");
   expectUsageError("name='a'\nsizes='8by8'\n", "s.toml:2:7: size '8by8'");
   expectUsageError("name='a'\nsizes='8x0'\n", "s.toml:2:7: size '8x0'");
