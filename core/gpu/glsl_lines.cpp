@@ -136,11 +136,9 @@ bool isGuard(const std::vector<GlslLine>& lines, const Chain& chain, size_t clos
 }  // namespace
 
 GlslFile::GlslFile(std::string_view text) : lines(parseLines(text)) {
-  std::vector<int> depth(lines.size(), 0);
   std::vector<Chain> open;
   for (size_t i = 0; i < lines.size(); ++i) {
     const std::string& directive = lines[i].directive;
-    depth[i] = static_cast<int>(open.size());
     if (directive == "if" || directive == "ifdef" || directive == "ifndef") {
       open.push_back({.opening = i, .hasElse = false, .tested = {}, .asked = {}});
       open.back().add(lines[i]);
@@ -150,14 +148,12 @@ GlslFile::GlslFile(std::string_view text) : lines(parseLines(text)) {
       open.back().hasElse = true;
       if (directive == "elif") open.back().add(lines[i]);
     } else if (directive == "endif") {
-      lines[open.back().opening].requiredMacros = open.back().required();
-      if (open.size() == 1 && isGuard(lines, open.back(), i)) {
-        for (size_t inside = open.back().opening; inside < i; ++inside) --depth[inside];
-      }
+      GlslLine& opening = lines[open.back().opening];
+      opening.requiredMacros = open.back().required();
+      opening.guard = open.size() == 1 && isGuard(lines, open.back(), i);
       open.pop_back();
     }
   }
-  for (size_t i = 0; i < lines.size(); ++i) lines[i].conditional = depth[i] > 0;
 }
 
 }  // namespace limn::gpu

@@ -7,6 +7,7 @@
 #include <set>
 
 #include "core/base/error.h"
+#include "core/gpu/private/glsl_conditions.h"
 #include "core/gpu/private/glsl_lines.h"
 
 namespace limn::gpu {
@@ -24,12 +25,13 @@ bool isIdentifier(std::string_view text) {
 
 class Expander {
  public:
-  explicit Expander(const SourceLookup& lookup) : lookup_(lookup) {}
+  Expander(const SourceLookup& lookup, UnreadIncludes unread) : lookup_(lookup), unread_(unread) {}
 
   ExpandedSource run(const std::string& entry, const std::map<std::string, std::string>& defines) {
     result_.text = "#version 450 core\n";
     for (const auto& [name, value] : defines) define(name, value);
     defines_ = &defines;
+    known_ = defines;
     const auto text = lookup_(entry);
     if (!text) throw Error(fmt::format("shader file '{}' does not exist", entry));
     appendFile(entry, *text, false);
@@ -63,20 +65,42 @@ class Expander {
     const size_t number = numberOf(path);
     stack_.push_back(path);
     appendLineMark(1, number);
+    OpenConditions conditions;
     for (size_t i = 0; i < file.lines.size(); ++i) {
       const GlslLine& line = file.lines[i];
       if (line.directive == "version") {
         throw Error(fmt::format("{}:{}: #version is written by the library: remove it", path, i + 1));
       }
-      for (const std::string& macro : line.requiredMacros) appendRequirement(macro, i + 1, number);
+      for (const std::string& macro : line.requiredMacros) {
+        appendRequirement(macro, i + 1, number);
+        conditions.inserted();
+      }
+      const bool miscounted = conditions.follow(line, known_);
+      const Holds here = conditions.here();
+      if (line.directive == "undef" && here != Holds::no) known_.erase(line.argument);
       if (line.directive == "include") {
-        appendInclude(path, i + 1, line.argument, conditional || line.conditional);
-        appendLineMark(i + 2, number);
+        const bool unread = here == Holds::no && unread_ == UnreadIncludes::leftOut;
+        if (!unread) {
+          appendIncludeUnder(here, path, i + 1, line.argument, conditional);
+          conditions.inserted();
+        }
+        appendLineMark(i + 2, number);  // one line for one where it is not read either
       } else {
         result_.text.append(line.text).push_back('\n');
+        const bool goesOn = line.text.find('\\') != std::string_view::npos;
+        if (miscounted && !goesOn) appendLineMark(i + 2, number);
       }
     }
     stack_.pop_back();
+  }
+
+  /// What an include brings under a condition of its file is there for certain as long as that lasts.
+  void appendIncludeUnder(Holds condition, const std::string& from, size_t line, const std::string& argument,
+                          bool conditional) {
+    if (condition == Holds::yes) return appendInclude(from, line, argument, conditional);
+    std::set<std::string> before = complete_;
+    appendInclude(from, line, argument, true);
+    complete_ = std::move(before);
   }
 
   void appendRequirement(const std::string& macro, size_t line, size_t file) {
@@ -114,26 +138,28 @@ class Expander {
       throw Error(fmt::format("{}:{}: '{}' includes itself: {} -> {}", from, line, path,
                               fmt::join(stack_, " -> "), path));
     }
-    if (complete_.contains(path)) return;  // certainly there already, whatever the conditions
+    if (complete_.contains(path)) return;
     const size_t number = numberOf(path);
     result_.text += fmt::format("#ifndef LIMN_INCLUDED_{0}\n#define LIMN_INCLUDED_{0}\n", number);
     appendFile(path, text, conditional);
     result_.text += "#endif\n";
-    if (!conditional) complete_.insert(path);
+    complete_.insert(path);
   }
 
   const SourceLookup& lookup_;
+  const UnreadIncludes unread_;
   const std::map<std::string, std::string>* defines_ = nullptr;
+  std::map<std::string, std::string> known_;  // those that no file may have undefined
   ExpandedSource result_;
   std::vector<std::string> stack_;  // files being included, outermost first
-  std::set<std::string> complete_;  // files included outside every condition
+  std::set<std::string> complete_;  // files that are certainly there already where the compiler reads on
 };
 
 }  // namespace
 
 ExpandedSource expandGlsl(const std::string& entry, const std::map<std::string, std::string>& defines,
-                          const SourceLookup& lookup) {
-  return Expander(lookup).run(entry, defines);
+                          const SourceLookup& lookup, UnreadIncludes unread) {
+  return Expander(lookup, unread).run(entry, defines);
 }
 
 std::string standaloneGlsl(const ExpandedSource& source) {

@@ -92,9 +92,10 @@ struct ShaderLibrary::Implementation {
     return std::nullopt;
   }
 
-  ExpandedSource expand(const ProgramDesc& desc, const std::string& file,
-                        std::map<fs::path, Stamp>& visited) const {
-    return expandGlsl(file, desc.defines, [&](const std::string& path) { return find(path, visited); });
+  ExpandedSource expand(const ProgramDesc& desc, const std::string& file, std::map<fs::path, Stamp>& visited,
+                        UnreadIncludes unread = UnreadIncludes::leftOut) const {
+    const auto lookup = [&](const std::string& path) { return find(path, visited); };
+    return expandGlsl(file, desc.defines, lookup, unread);
   }
 
   /// Expands every stage and builds the program, unless the text is that of `entry` already; true when it was
@@ -165,8 +166,12 @@ bool ShaderLibrary::has(const ProgramDesc& desc) const {
 bool ShaderLibrary::mentions(const ProgramDesc& desc, std::string_view word) const {
   const auto found = implementation_->entries.find(desc);
   if (found == implementation_->entries.end()) return false;
-  return std::ranges::any_of(found->second.texts,
-                             [&](const std::string& text) { return hasWord(text, word); });
+  const auto has = [&](const std::string& text) { return hasWord(text, word); };
+  if (std::ranges::any_of(found->second.texts, has)) return true;
+  std::map<fs::path, Stamp> visited;
+  return std::ranges::any_of(desc.files, [&](const std::string& file) {
+    return has(implementation_->expand(desc, file, visited, UnreadIncludes::kept).text);
+  });
 }
 
 ShaderLibrary::ReloadResult ShaderLibrary::reload() {

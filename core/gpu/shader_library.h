@@ -55,7 +55,8 @@ class LIMN_API ShaderLibrary {
   /// Says whether the program is already compiled, so that program() would not compile it.
   bool has(const ProgramDesc& desc) const;
 
-  /// Says whether the text of a compiled program contains `word`, even in a part that the compiler removed.
+  /// Says whether the text of a compiled program contains `word`, even in a part that the compiler removed or
+  /// that its defines keep from being included.
   bool mentions(const ProgramDesc& desc, std::string_view word) const;
 
   /// Holds what reload() did.

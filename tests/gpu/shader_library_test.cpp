@@ -32,6 +32,12 @@ constexpr EmbeddedSource kSources[] = {
     {"ladder.comp.glsl",
      "layout(local_size_x = 1) in;\n#ifdef __cplusplus\n#include <cmath>\n#include \"core/none.h\"\n#endif\n"
      "void main() {}\n"},
+    {"behind.comp.glsl",
+     "layout(local_size_x = 1) in;\n#ifdef LIMN_MORE\n#include \"value.glsl\"\n#include "
+     "\"broken.glsl\"\n#endif\n"
+     "void main() { undeclared = 1; }\n"},
+    {"optional.comp.glsl",
+     "layout(local_size_x = 1) in;\n#if LIMN_MODE\n#include \"value.glsl\"\n#endif\nvoid main() {}\n"},
     {"warns.comp.glsl",
      "layout(local_size_x = 1) in;\nlayout(std430) buffer Result { float result; };\n"
      "void main() { float x; result = x; }\n"},
@@ -106,6 +112,21 @@ TEST_F(ShaderLibraryTest, errorsNameTheIncludedFileAndLine) {
   EXPECT_THAT(error, HasSubstr("cannot compile techniques/test/broken.comp.glsl (LIMN_A=1): "));
   EXPECT_THAT(error, HasSubstr("techniques/test/broken.glsl:3: "));
   EXPECT_THAT(error, HasSubstr("undeclared"));
+}
+
+TEST_F(ShaderLibraryTest, errorsBehindASkippedIncludeNameTheirLine) {
+  shaders().mount("techniques/test/", kSources);
+  EXPECT_THAT(errorOf({{"techniques/test/behind.comp.glsl"}, {}}),
+              HasSubstr("techniques/test/behind.comp.glsl:6: "));
+}
+
+TEST_F(ShaderLibraryTest, mentionsWhatItsDefinesKeepFromBeingIncluded) {
+  shaders().mount("techniques/test/", kSources);
+  const ProgramDesc desc{{"techniques/test/optional.comp.glsl"}, {{"LIMN_MODE", "0"}}};
+  shaders().program(desc);
+  EXPECT_THAT(shaders().expanded(desc, desc.files[0]), Not(HasSubstr("value")));
+  EXPECT_TRUE(shaders().mentions(desc, "value"));
+  EXPECT_FALSE(shaders().mentions(desc, "values"));
 }
 
 TEST_F(ShaderLibraryTest, macrosThatAreTestedMustBeDefined) {

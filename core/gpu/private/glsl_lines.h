@@ -5,19 +5,21 @@
 #include <string_view>
 #include <vector>
 
+#include "core/base/export.h"
+
 namespace limn::gpu {
 
 struct GlslLine {
-  std::string_view text;     ///< as written; points into the file's text
-  std::string directive;     ///< "include", "if", ...; empty where the line is not the start of a directive
-  std::string argument;      ///< of the directive, without comments, continued lines joined
-  bool conditional = false;  ///< inside an #if other than the file's own include guard
+  std::string_view text;  ///< as written; points into the file's text
+  std::string directive;  ///< "include", "if", ...; empty where the line is not the start of a directive
+  std::string argument;   ///< of the directive, without comments, continued lines joined
+  bool guard = false;     ///< the #ifndef of the file's own include guard
   /// On the #if that opens a chain: LIMN_ macros whose value the chain tests without asking whether they are
   /// defined.
   std::vector<std::string> requiredMacros;
 };
 
-struct GlslFile {
+struct LIMN_API GlslFile {
   /// Splits `text`, which must outlive this object, into lines.
   explicit GlslFile(std::string_view text);
   std::vector<GlslLine> lines;

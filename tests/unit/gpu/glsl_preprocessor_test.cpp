@@ -97,6 +97,49 @@ TEST(GlslPreprocessor, anIncludeUnderAConditionDoesNotHideALaterOne) {
             2);
 }
 
+TEST(GlslPreprocessor, filesUnderAConditionAreIncludedOnceThere) {
+  const Files files = {
+      {"main.comp.glsl", "#ifdef LIMN_X\n#include \"a.glsl\"\n#endif\n#include \"b.glsl\"\n"},
+      {"a.glsl", "#include \"b.glsl\"\n#include \"c.glsl\"\n"},
+      {"b.glsl", "text b\n"},
+      {"c.glsl", "#include \"b.glsl\"\ntext c\n"}};
+  const std::string text = expand(files).text;
+  EXPECT_EQ(occurrences(text, "text b\n"), 2) << "once where LIMN_X is defined, and once for where it is not";
+  EXPECT_EQ(occurrences(text, "text c\n"), 1);
+}
+
+TEST(GlslPreprocessor, whatTheDefinesKeepFromBeingReadIsLeftOut) {
+  const Files files = {{"main.comp.glsl",
+                        "#if MODELS\n#include \"a.glsl\"\n#else\n#include \"b.glsl\"\n#endif\n"
+                        "#if MODELS || OTHER\n#include \"c.glsl\"\n#endif\n"},
+                       {"a.glsl", "text a\n"},
+                       {"b.glsl", "#if (MODELS & 6) != 0\n#include \"no.glsl\"\n#endif\ntext b\n"},
+                       {"c.glsl", "text c\n"}};
+  const ExpandedSource none = expand(files, {{"MODELS", "0"}});
+  EXPECT_THAT(none.files, ElementsAre("main.comp.glsl", "b.glsl", "c.glsl"));
+  EXPECT_THAT(none.text, HasSubstr("#if MODELS\n#line 3 0\n#else\n"));
+  EXPECT_THAT(none.text, HasSubstr("#if (MODELS & 6) != 0\n#line 3 1\n#endif\ntext b\n"));
+  EXPECT_THAT(expand(files, {{"MODELS", "1"}}).files, ElementsAre("main.comp.glsl", "a.glsl", "c.glsl"));
+  EXPECT_THAT(expand(files).files, ElementsAre("main.comp.glsl", "a.glsl", "b.glsl", "c.glsl"));
+}
+
+TEST(GlslPreprocessor, aDefineThatAFileTakesBackDecidesNothing) {
+  const Files files = {
+      {"main.comp.glsl", "#undef MODE\n#define MODE 1\n#if MODE\n#include \"a.glsl\"\n#endif\n"},
+      {"a.glsl", "text a\n"}};
+  EXPECT_THAT(expand(files, {{"MODE", "0"}}).text, HasSubstr("text a\n"));
+}
+
+// A compiler that skips an include does not read the marks in it.
+TEST(GlslPreprocessor, linesBehindASkippedIncludeAreCounted) {
+  const Files files = {{"main.comp.glsl", "#ifdef LIMN_X\n#include \"a.glsl\"\n#else\nelse\n#endif\nlast\n"},
+                       {"a.glsl", "text a\n"}};
+  EXPECT_EQ(expand(files).text,
+            "#version 450 core\n#line 1 0\n#ifdef LIMN_X\n"
+            "#ifndef LIMN_INCLUDED_1\n#define LIMN_INCLUDED_1\n#line 1 1\ntext a\n#endif\n#line 3 0\n"
+            "#else\n#line 4 0\nelse\n#endif\n#line 6 0\nlast\n");
+}
+
 TEST(GlslPreprocessor, commentsHideDirectives) {
   const Files files = {{"main.comp.glsl",
                         "// #include \"x.glsl\"\n/* #include \"x.glsl\"\n#include \"x.glsl\"\n*/ #include "
