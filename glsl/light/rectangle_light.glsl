@@ -173,11 +173,12 @@ struct RectangleVertex {
   float excess;  // 1 / r - 1 / r_0, from r_0^2 - r^2 = (P_0 - P) . (P_0 + P)
 };
 
-LIMN_FN RectangleVertex rectangle_vertex(Rectangle r, vec2 ab, vec2 far, vec3 farthest) {
+// least: its distance is taken for no less.
+LIMN_FN RectangleVertex rectangle_vertex(Rectangle r, vec2 ab, vec2 far, vec3 farthest, float least) {
   RectangleVertex x;
   x.ab = ab;
   x.point = rectangle_point(r, ab);
-  float radius = max(length(x.point), 1e-12f);
+  float radius = max(length(x.point), least);
   vec2 d = far - ab;
   x.inverse_r = 1.0f / radius;
   x.excess = dot(d.x * r.u + d.y * r.v, x.point + farthest) / (radius * (1.0f + radius));
@@ -192,9 +193,9 @@ struct RectangleSum {
 
 // Adds the edge that ends in vertex i, if there is one.
 LIMN_FN RectangleSum rectangle_sum_edge(RectangleSum sum, Rectangle r, RectanglePart p, int i, vec2 far,
-                                        vec3 farthest) {
+                                        vec3 farthest, float least) {
   if (i < p.most && i < p.count) {
-    RectangleVertex next = rectangle_vertex(r, p.vertex[i], far, farthest);
+    RectangleVertex next = rectangle_vertex(r, p.vertex[i], far, farthest, least);
     vec2 d = next.ab - sum.here.ab;
     vec3 normal = cross(sum.here.point, d.x * r.u + d.y * r.v);
     float inverse_rr = sum.here.inverse_r * next.inverse_r;
@@ -232,17 +233,20 @@ LIMN_FN vec3 rectangle_vector_irradiance(Rectangle r, RectanglePart p) {
   scaled.u = r.u * unit;
   scaled.v = r.v * unit;
   vec3 farthest = rectangle_point(scaled, far);
+  // Where the receiver touches the rectangle both of its horizons pass through it, and so may a vertex, whose (a, b) are rounded:
+  // nearer than that nothing is known of it, and the sines of its edges would exceed all bounds.
+  float least = max(1e-7f * sqrt(max(dot(scaled.u, scaled.u), dot(scaled.v, scaled.v))), 1e-12f);
   RectangleSum sum;
-  sum.here = rectangle_vertex(scaled, rectangle_part_last(p), far, farthest);
+  sum.here = rectangle_vertex(scaled, rectangle_part_last(p), far, farthest, least);
   sum.edges = vec3(0.0f);
   // Not a loop: the body is too large for compilers to unroll one, see above rectangle_part_last.
-  sum = rectangle_sum_edge(sum, scaled, p, 0, far, farthest);
-  sum = rectangle_sum_edge(sum, scaled, p, 1, far, farthest);
-  sum = rectangle_sum_edge(sum, scaled, p, 2, far, farthest);
-  sum = rectangle_sum_edge(sum, scaled, p, 3, far, farthest);
-  sum = rectangle_sum_edge(sum, scaled, p, 4, far, farthest);
-  sum = rectangle_sum_edge(sum, scaled, p, 5, far, farthest);
-  sum = rectangle_sum_edge(sum, scaled, p, 6, far, farthest);
+  sum = rectangle_sum_edge(sum, scaled, p, 0, far, farthest, least);
+  sum = rectangle_sum_edge(sum, scaled, p, 1, far, farthest, least);
+  sum = rectangle_sum_edge(sum, scaled, p, 2, far, farthest, least);
+  sum = rectangle_sum_edge(sum, scaled, p, 3, far, farthest, least);
+  sum = rectangle_sum_edge(sum, scaled, p, 4, far, farthest, least);
+  sum = rectangle_sum_edge(sum, scaled, p, 5, far, farthest, least);
+  sum = rectangle_sum_edge(sum, scaled, p, 6, far, farthest, least);
   return rectangle_part_share(p) * cross(scaled.u, scaled.v) + 0.5f * sum.edges;
 }
 

@@ -151,6 +151,25 @@ TEST(RectangleLight, DegeneratePlacesAreFiniteAndBounded) {
   EXPECT_NEAR(rectangle_irradiance(sky, vec3(0, 0, -1)), 0, 1e-6);
 }
 
+/// Of a receiver that touches the light both horizons, that of its triangle and that of its shading normal,
+/// pass through it: they meet in a vertex where it is itself. No surface receives more than pi. Vertices are
+/// rounded to 6e-8 sides and taken to be no nearer than 1e-7, so that the two edges of that one turn by 0.6
+/// at most and add no more than half of pi.
+TEST(RectangleLight, TouchedBetweenTwoHorizonsItIsFiniteAndBounded) {
+  std::mt19937 random(5);
+  std::uniform_real_distribution<float> inside(-0.4f, 0.4f);
+  for (const float scale : {1e-6f, 1.f, 1e6f}) {
+    for (int i = 0; i < 20000; ++i) {
+      const vec3 centre(inside(random), i % 2 == 0 ? 0.f : inside(random), 2e-8f * inside(random));
+      const Rectangle r{scale * centre, scale * vec3(1, 0, 0), scale * vec3(0, 1, 0)};
+      const vec3 ng(randomRotation(random)[2]), n(randomRotation(random)[2]);
+      const RectanglePart part = rectangle_part_above(r, rectangle_above(r, ng), n);
+      const float irradiance = std::abs(dot(rectangle_vector_irradiance(r, part), n));
+      EXPECT_TRUE(irradiance <= 1.5f * pi) << irradiance << " at scale " << scale;
+    }
+  }
+}
+
 TEST(RectangleLight, ClippingKeepsTheAreaAboveTheHorizon) {
   std::mt19937 random(7);
   std::uniform_real_distribution<double> unit(0, 1);
