@@ -2,6 +2,7 @@
 #include <tiny_gltf.h>
 
 #include <cmath>
+#include <utility>
 
 #include "core/scene_io/private/loader.h"
 
@@ -83,7 +84,20 @@ int Loader::metaballMaterial(const tinygltf::Value& extras, const std::string& w
   if (index < 0 || static_cast<std::size_t>(index) >= model_->materials.size())
     fail(fmt::format("{} material: an index of the file's {} materials is accepted", what,
                      model_->materials.size()));
-  return index;
+  return untexturedMaterial(index, what);
+}
+
+int Loader::untexturedMaterial(int index, const std::string& what) {
+  if (!scene_.materials[static_cast<std::size_t>(index)].textured()) return index;
+  const auto [known, added] = untextured_.emplace(index, static_cast<int>(scene_.materials.size()));
+  if (!added) return known->second;
+  warn(what + " material: balls have no texture coordinates; its textures are left out");
+  Material plain = scene_.materials[static_cast<std::size_t>(index)];
+  plain.baseColourTexture = plain.metalRoughTexture = plain.normalTexture = plain.emissiveTexture = {};
+  plain.height = kNone;
+  scene_.materials.push_back(std::move(plain));
+  uvUses_.push_back({});
+  return known->second;
 }
 
 }  // namespace limn::scene

@@ -268,6 +268,8 @@ class Loader {
   void readMetaballs();  ///< replaces those read before
   Metaballs readMetaballs(const tinygltf::Value& extras, const std::string& what) const;
   int metaballMaterial(const tinygltf::Value& extras, const std::string& what);
+  /// Returns the index of that material, or of one without the textures that it has.
+  int untexturedMaterial(int index, const std::string& what);
 
   // loader_animation.cpp
   void readAnimations();
@@ -318,9 +320,10 @@ class Loader {
 
   std::map<int, int> lightTextureIndex_;  ///< Scene::images to Scene::lightTextures
 
-  int defaultMaterial_ = kNone;  ///< for primitives that name none
-  std::vector<UvUse> uvUses_;    ///< parallel to Scene::materials
-  std::vector<int> newIndex_;    ///< file's node index to Scene::nodes
+  int defaultMaterial_ = kNone;    ///< for primitives that name none
+  std::map<int, int> untextured_;  ///< materials with textures to those without, for metaballs
+  std::vector<UvUse> uvUses_;      ///< parallel to Scene::materials
+  std::vector<int> newIndex_;      ///< file's node index to Scene::nodes
   std::vector<int> fileIndex_;
   std::vector<int> cameraIndex_;  ///< file's camera index to Scene::cameras, or none
   std::vector<char> visible_;     ///< by the file's index: below the scene's roots

@@ -9,6 +9,7 @@
 #include <vector>
 
 #include "tests/support/gltf_builder.h"
+#include "tests/support/png.h"
 #include "tests/support/scene_files.h"
 
 namespace limn::scene {
@@ -126,6 +127,22 @@ TEST(Metaballs, ComeFromTheExtrasOfANode) {
   EXPECT_NEAR(pose.dynamic[0].bounds.radius(), 0.45 * std::sqrt(3), 0.05);
   EXPECT_EQ(loadBuilt(withMetaballs({{"count", 2}})).dynamic.size(), 1u) << "the others by default";
   EXPECT_EQ(loadError(withMetaballs({{"count", 2}, {"seed", UINT32_MAX}}).glb()), "") << "the largest";
+}
+
+/// Without coordinates a texture is white in the reference, and what it is at (0, 0) where it is rasterised.
+TEST(Metaballs, HaveNoTexturesForLackOfCoordinates) {
+  GltfBuilder b = withMetaballs({{"count", 1}, {"resolution", 8}, {"material", 1}});
+  ASSERT_EQ(b.texturedMaterial(png(1, 1, {1, 2, 3, 4})), 1);
+  b.root["materials"][1]["pbrMetallicRoughness"]["roughnessFactor"] = 0.25;
+  b.node({{"extras", {{"limn_metaballs", {{"count", 1}, {"resolution", 8}, {"material", 1}}}}}});
+  const Scene scene = loadBuilt(b);
+  ASSERT_EQ(scene.dynamic.size(), 2u);
+  EXPECT_EQ(scene.dynamic[0].material, scene.dynamic[1].material) << "one for all";
+  EXPECT_TRUE(scene.materials.at(1).textured());
+  const Material& plain = scene.materials.at(static_cast<std::size_t>(scene.dynamic[0].material));
+  EXPECT_FALSE(plain.textured());
+  EXPECT_EQ(plain.roughness, 0.25f);
+  EXPECT_THAT(scene.warnings, testing::Contains(HasSubstr("balls have no texture coordinates")));
 }
 
 TEST(Metaballs, NonsenseIsRefusedByName) {
