@@ -19,8 +19,6 @@
 namespace limn::scene {
 namespace {
 
-constexpr uint32_t kInstanceDoubleSided = 1, kInstanceMirrored = 2;
-
 gpu::VertexArray makeVertexArray(gpu::Device& device, bool colours) {
   // Locations: glsl/geometry/*.vert.glsl. Bindings 0 to 3: positions, attributes, colours, draw entries.
   std::vector<gpu::VertexAttribute> attributes{
@@ -141,8 +139,7 @@ void GpuScene::Implementation::updateInstances(const Pose& pose) {
                                               side * glm::cross(m[0], m[1])));
     out.material = static_cast<uint32_t>(state.material);
     out.first_vertex = state.range.firstVertex;
-    out.flags = (materials.doubleSided(state.material) ? kInstanceDoubleSided : 0u) |
-                (state.mirrored ? kInstanceMirrored : 0u);
+    out.flags = state.mirrored ? glsl::instance_mirrored : 0u;
     out.first_index = state.range.firstIndex;
   }
   sort();

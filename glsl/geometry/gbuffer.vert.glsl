@@ -27,7 +27,7 @@ void main() {
 
   vec4 tangent = vertex_unpack_tangent(directions.y);
   normal_ws = mat3(instances[entry.x].normal_to_world) * vertex_unpack_normal(directions.x);
-  bool mirrored = (instances[entry.x].flags & 2u) != 0u;
+  bool mirrored = (instances[entry.x].flags & instance_mirrored) != 0u;
   tangent_ws = vec4(mat3(object_to_world) * tangent.xyz, mirrored ? -tangent.w : tangent.w);
   surface_uv = uv;
 #if COLOURS

@@ -45,9 +45,10 @@ struct Instance {
   mat4 normal_to_world;  // inverse transpose, upper 3x3
   uint material;
   uint first_vertex;
-  uint flags;  // 1: double sided, 2: mirrored winding
+  uint flags;  // instance_*
   uint first_index;
 };
+LIMN_CONST uint instance_mirrored = 1u;  // its triangles are wound the other way round than those of its mesh
 
 // Material constants (storage buffer element); textures are bound per draw.
 struct Material {
