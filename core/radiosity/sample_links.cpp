@@ -25,6 +25,10 @@ constexpr int kMostRays = 32;
 /// Links that would transport less than this part of the error allowed are not made.
 constexpr float kNegligible = 1e-3f;
 
+/// Into narrow lobes, which allow less error than that, links are made down to this part of what they allow:
+/// all of their light may come over such links. At roughness 0.2 and above it asks for no more of them.
+constexpr float kNegligibleOfLobe = 0.2f;
+
 /// Links into lobes are refined until the sender spans less than this many of the lobe's widths.
 constexpr float kSenderLobeWidths = 2.5f;
 
@@ -142,7 +146,7 @@ class SampleSolver::Shooting {
     const bool lobe = solver_.settings_.receiver && receiver.glossy;
     const float allowed = error_ * (lobe ? receiver.tolerance : 1.f);
     const Bounds bounds = bound(pair, s, divisible ? allowed : 1e30f);
-    if (!(bounds.most > kNegligible * error_)) return Verdict::none;
+    if (!(bounds.most > std::min(kNegligible * error_, kNegligibleOfLobe * allowed))) return Verdict::none;
     if (divisible && bounds.most > allowed) {
       if (bounds.varies > kBoundsExcess * allowed) return split(receiver, sender);
       if (lobe && sender.childCount > 0 && wide(pair)) return Verdict::splitSender;
@@ -180,8 +184,7 @@ class SampleSolver::Shooting {
       const float lobes = solver_.caps_[s].most(towards, cosine);
       bounds = {(diffuse + lobes) * pair.transport, lobes * pair.transport};
       // A pair that a horizon cuts is divided for its diffuse light alone, whatever the lobes send.
-      const bool divided =
-          pair.cut && diffuse * pair.transport > std::max(kBoundsExcess * allowed, kNegligible * error_);
+      const bool divided = pair.cut && diffuse * pair.transport > kBoundsExcess * allowed;
       if (bounds.most > allowed && !divided && solver_.flat(s)) {
         const DirectionBounds closer =
             solver_.trees_[s].bounds(glsl::to_local(solver_.frames_[s], towards), cosine);

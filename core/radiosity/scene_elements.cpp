@@ -192,7 +192,9 @@ void SceneElements::setMaterials() {
              o.weights.z * values[o.vertices[2]];
     };
     glm::vec4 base = material.baseColour, metalRough(1);
-    if (!primitive.colours.empty()) base *= blend(primitive.colours);
+    // Vertices and textures decide on a model's coverage alone.
+    const bool coloured = !material.model;
+    if (coloured && !primitive.colours.empty()) base *= blend(primitive.colours);
     if (!primitive.uvs.empty()) {
       // The level whose texels are as large as the disc: from the triangle's area in the texture and in
       // space.
@@ -210,7 +212,7 @@ void SceneElements::setMaterials() {
         const float texels = plane / std::max(space, 1e-30f) * disc * size.x * size.y;
         return scene::sampleTexture(scene_, texture, blend(uv), 0.5f * std::log2(std::max(texels, 1.f)));
       };
-      base *= lookup(material.baseColourTexture);
+      if (coloured) base *= lookup(material.baseColourTexture);
       metalRough = lookup(material.metalRoughTexture);
     }
     const glsl::SurfaceBrdf brdf = glsl::surface_brdf(

@@ -17,6 +17,7 @@ namespace {
 
 constexpr float kSmallestWeldCosine = 0.70710678f;
 constexpr uint32_t kSmallestCluster = 16;
+constexpr size_t kMostTriangles = 4;  // between surfels, for each that there may be
 
 /// Disjoint sets (Tarjan 1975), by path halving.
 class Sets {
@@ -190,6 +191,12 @@ class Builder {
   void emit(const Weights& a, const Weights& b, const Weights& c, float triangleArea) {
     const uint32_t corners[3] = {surfel(a), surfel(b), surfel(c)};
     if (corners[0] == corners[1] || corners[1] == corners[2] || corners[2] == corners[0]) return;
+    // A closed mesh has two for each surfel: there are many more only where triangles lie on each other.
+    if (out_.triangles.size() / (3 * kMostTriangles) >= most_)
+      throw UsageError(fmt::format(
+          "surface elements: the scene has more than {} triangles for each of the {} that fit the "
+          "memory allowed",
+          kMostTriangles, most_));
     for (int k = 0; k < 3; ++k) out_.triangles.push_back(corners[side_ < 0 ? 2 - k : k]);
     for (const uint32_t corner : corners) out_.areas[corner] += triangleArea / 3;
   }

@@ -93,8 +93,8 @@ struct Surfels {
 ///
 /// Clusters are the charts of the texture coordinates; for an object without any, they are its connected
 /// pieces whose normals have the same dominant axis. Clusters of fewer than 16 surfels are joined, by axis.
-/// `lift` is as Bodies has it. Throws UsageError as soon as there are more than `most` surfels: how many
-/// halved edges make is not known before.
+/// `lift` is as Bodies has it. Throws UsageError as soon as there are more than `most` surfels, or four times
+/// as many triangles between them: how many halved edges make is not known before.
 LIMN_API Surfels createSurfels(std::span<const TriangleMesh> objects, float longestEdge,
                                double lift = kDefaultLift, size_t most = std::numeric_limits<size_t>::max());
 

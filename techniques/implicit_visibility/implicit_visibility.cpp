@@ -65,7 +65,7 @@ constexpr Parameter kParameters[] = {
     integer("glossy_bins", 0, {0, 16}, "bins",
             "N of the 6 x N x N bins that glossy surfaces send light into; 0: they send it evenly")
         .quality(),
-    integer("light_samples", 64, {1, 1024}, "points", "Of each area light, tested against the bins")
+    integer("light_samples", 64, {1, 1024}, "points", "Of each light with a size, tested against the bins")
         .logScale(),
     real("reach", 0.98, {0, 1}, "of the way",
          "Links that are shorter than this hide a point of a light: those at the light itself are not to"),

@@ -86,6 +86,19 @@ TEST(SampleSolverTest, LinksFollowTheErrorAllowed) {
   }
 }
 
+/// The lobe allows so little error that all links are between leaves, each of which brings less than a
+/// thousandth of what diffuse surfaces allow.
+TEST(SampleSolverTest, NarrowLobesTakeTheLightOfManySmallElements) {
+  SampleWorld world(
+      {rectangleMesh({0, 0, 0}, {0, 0, 1}, {1, 0, 0}, 32), rectangleMesh({0, 1, 0}, {1, 0, 0}, {0, 0, 1}, 4)},
+      {diffuseLeaf(0.8f), metalLeaf(0.06f)}, {.linkError = 1});
+  world.light({1, 0});
+  world.solver->reflect();
+  world.solver->shoot(FreeSight());
+  std::printf("a plate of roughness 0.06: %.2f %% off\n", 100 * (world.mean(1) / (0.8 * kSquares) - 1));
+  EXPECT_NEAR(world.mean(1) / (0.8 * kSquares), 1, 0.03);
+}
+
 TEST(SampleSolverTest, FurnacesAreAsBrightAsTheyReflect) {
   for (const bool round : {true, false}) {
     SampleWorld world({round ? sphereMesh({0, 0, 0}, 1, 24, -1) : roomMesh(12)}, {diffuseLeaf(0.5f)});

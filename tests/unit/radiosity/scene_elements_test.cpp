@@ -4,9 +4,12 @@
 #include <gtest/gtest.h>
 
 #include <algorithm>
+#include <vector>
 
 #include "core/base/error.h"
+#include "core/scene/material_model.h"
 #include "core/scene/metaballs.h"
+#include "tests/support/material_models.h"
 #include "tests/support/test_scenes.h"
 
 namespace limn::radiosity {
@@ -181,6 +184,47 @@ TEST(SceneElementsTest, AreRefusedBeforeTheyAreAllMade) {
     EXPECT_STREQ(error.what(),
                  "surface elements: the scene has more than the 100 that fit the memory allowed");
   }
+}
+
+/// Triangles that lie on each other share their elements, of which there may be few.
+TEST(SceneElementsTest, AreRefusedWhereManyTrianglesLieOnEachOther) {
+  const auto elementsOf = [](int layers) {
+    scene::Scene scene;
+    scene::Primitive floor = test::floorPrimitive(1, test::addMaterial(scene));
+    const std::vector<uint32_t> layer = floor.indices;
+    for (int i = 1; i < layers; ++i) floor.indices.insert(floor.indices.end(), layer.begin(), layer.end());
+    const int mesh = test::addMesh(scene, floor);
+    scene::Pose pose;
+    test::addInstance(scene, pose, mesh);
+    return SceneElements(scene, pose, 0.1f, 1000).triangles().size() / 3;
+  };
+  const size_t once = elementsOf(1);
+  EXPECT_GT(once, 500u);
+  EXPECT_EQ(elementsOf(2), 2 * once);
+  EXPECT_THROW(elementsOf(20), UsageError);
+}
+
+/// What cuts the mask of a material with a model, a texture and colours of vertices, is no colour of it.
+TEST(SceneElementsTest, ModelsHaveTheColourOfTheirOwn) {
+  const auto albedo = [](bool model, bool coloured) {
+    scene::Scene scene;
+    scene::Material material;
+    if (coloured) {
+      scene.images.emplace_back().levels.push_back({1, 1, {32, 64, 128, 255}});
+      material.alphaCutoff = 0.5f;
+      material.baseColourTexture.image = 0;
+    }
+    if (model) scene::setModel(material, test::materialModels().front().model);
+    scene::Primitive floor = test::floorPrimitive(1, test::addMaterial(scene, material));
+    if (coloured) floor.colours.assign(4, glm::vec4(0.2f, 0.5f, 1, 1));
+    const int mesh = test::addMesh(scene, floor);
+    scene::Pose pose;
+    test::addInstance(scene, pose, mesh);
+    const SceneElements elements(scene, pose, 10, 1u << 20);
+    return elements.leaves()[elements.forest().leafOf()[0]].albedo;
+  };
+  EXPECT_EQ(albedo(true, true), albedo(true, false));
+  EXPECT_NE(albedo(false, true), albedo(false, false));
 }
 
 /// Sources fill again what nobody holds: the address would be the same.
