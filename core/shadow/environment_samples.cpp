@@ -43,9 +43,9 @@ void EnvironmentSamples::upload(gpu::Device& device) {
   buffer_ = gpu::Buffer::of<glsl::EnvironmentSample>(device, "samples of the environment", samples_);
 }
 
-std::vector<SampleBatch> sampleBatches(const EnvironmentSamples& samples, const ParameterValues& parameters) {
-  return sampleBatches(samples.count(), {.each = 1, .size = parameters.integer("shadow_map_size")},
-                       parameters.integer("memory"));
+std::vector<SampleBatch> sampleBatches(const EnvironmentSamples& samples, const TechniqueInputs& inputs) {
+  return sampleBatches(samples.count(), {.each = 1, .size = inputs.parameters.integer("shadow_map_size")},
+                       inputs.parameters.integer("memory"), mostSamplesOfLoop(inputs));
 }
 
 VisibilityPass environmentSamplePass(const TechniqueInputs& inputs, std::string_view technique,
@@ -80,7 +80,7 @@ TextureHandle addSampledEnvironment(frame::FrameGraph& graph, const TechniqueInp
                                     frame::BufferHandle handle, TextureHandle target) {
   const bool coats = (inputs.handles.modelKinds & 1u << glsl::model_coated) != 0;
   TextureHandle mirrorSums;  // what a batch hands on to the next
-  for (const SampleBatch& batch : sampleBatches(samples, inputs.parameters)) {
+  for (const SampleBatch& batch : sampleBatches(samples, inputs)) {
     VisibilityPass pass = environmentSamplePass(inputs, technique, samples, handle, batch,
                                                 "glsl/shadow/sampled_environment.comp.glsl");
     pass.image = "radiance";

@@ -43,10 +43,10 @@ class LIMN_API EnvironmentSamples {
   gpu::Buffer buffer_;
 };
 
-/// Returns the batches in which the maps of all samples are rendered, for a technique that declares
-/// shadow_map_size and memory.
+/// Returns the batches in which the maps of all samples are rendered, each for one loop of a program, for a
+/// technique that declares shadow_map_size and memory.
 LIMN_API std::vector<SampleBatch> sampleBatches(const EnvironmentSamples& samples,
-                                                const ParameterValues& parameters);
+                                                const TechniqueInputs& inputs);
 
 /// Returns the pass over a batch of samples and their maps whose program, `file`, includes
 /// glsl/shadow/environment_samples.glsl, for a technique that declares shadow_map_size, shadow_map_fit, bias

@@ -13,6 +13,10 @@
 #include "core/gpu/objects.h"
 #include "glsl/numeric/sampling.glsl"
 
+namespace limn {
+struct TechniqueInputs;
+}
+
 namespace limn::shadow {
 
 /// Holds the samples first .. first + count - 1 of `total`.
@@ -38,9 +42,16 @@ struct SampleLayers {
   int size = 0;        ///< texels per side of each layer
 };
 
-/// Splits samples into batches (of at least one sample) whose maps take at most `mebibytes`, and no more
-/// layers than every device supports in one texture.
-LIMN_API std::vector<SampleBatch> sampleBatches(int total, const SampleLayers& layers, int mebibytes);
+/// Splits samples into batches (of at least one sample and, where samples have maps of their own, at most
+/// `largest`) whose maps take at most `mebibytes`, and no more layers than every device supports in one
+/// texture.
+LIMN_API std::vector<SampleBatch> sampleBatches(int total, const SampleLayers& layers, int mebibytes,
+                                                int largest = 4096);
+
+/// Returns how many samples one loop of a program may reflect; a pixel has two such loops at most. llvmpipe
+/// leaves all loops of a thread after 65,535 steps in all, and light that crosses the grid of a medium takes
+/// many of them: on software renderers that bounds the samples.
+LIMN_API int mostSamplesOfLoop(const TechniqueInputs& inputs);
 
 /// Returns the place of sample i in the unit square: the R2 sequence, shifted so that the first is the
 /// centre.

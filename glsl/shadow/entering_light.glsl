@@ -9,7 +9,7 @@
 #if LIGHT_COUNT
 #include "glsl/light/light_texture.glsl"
 #include "glsl/light/light_view.glsl"
-#include "glsl/media/medium_input.glsl"
+#include "glsl/media/light_transmittance.glsl"
 #include "glsl/shadow/alike_lights.glsl"
 #endif
 
@@ -77,13 +77,7 @@ vec3 entering_of(ShadowLight maps, DiffusionBoundary boundary, vec3 p, vec3 n) {
   Light light = lights[maps.light];
   vec3 arriving = entering_unshadowed(light, boundary, p, n);
   if (arriving == vec3(0.0) || !lit_by_map(maps, light, p, n)) return vec3(0.0);
-#if MEDIUM
-  Medium medium = scene_medium();
-  float inside = light.type == light_directional ? medium_length(medium, p, -light.direction, 3.0e38)
-                                                 : medium_length_between(medium, light.position, p);
-  arriving *= medium_transmittance(medium, inside);
-#endif
-  return arriving * light_texture(light, p);
+  return arriving * light_transmittance(light, p) * light_texture(light, p);
 }
 #endif
 

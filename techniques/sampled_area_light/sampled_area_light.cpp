@@ -62,7 +62,10 @@ class SampledAreaLight : public Technique {
       else
         layers.shared += taken;
     }
-    return shadow::sampleBatches(samples, layers, inputs.parameters.integer("memory"));
+    // A pixel goes through the samples of all lights.
+    const int lightCount = std::max(1, static_cast<int>(lights.size()));
+    return shadow::sampleBatches(samples, layers, inputs.parameters.integer("memory"),
+                                 std::max(1, shadow::mostSamplesOfLoop(inputs) / lightCount));
   }
 
   static shadow::VisibilityPass commonPass(const TechniqueInputs& inputs, std::span<const uint32_t> lights,

@@ -1,5 +1,7 @@
 // The environment's light as all that surfaces would reflect of it without shadows, less what is hidden of a
 // few samples, which blocks of pixels may share.
+#include <fmt/format.h>
+
 #include <algorithm>
 #include <cmath>
 #include <map>
@@ -189,14 +191,22 @@ class SubtractiveShadows : public Technique {
                    const TechniqueInputs& inputs) {
     if (samplesHandle_) return;
     const ParameterValues& p = inputs.parameters;
+    const bool asSamples = p.choice("unshadowed") == lights && p.choice("combine") != add;
+    const int withoutShadows = p.integer("lights") * p.integer("unshadowed_factor");
+    const int most = shadow::mostSamplesOfLoop(inputs);
+    if (asSamples && withoutShadows > most)
+      throw UsageError(
+          fmt::format("subtractive_shadows: lights={} and unshadowed_factor={} make {} samples of the light "
+                      "without shadows; on software renderers unshadowed=lights takes at most {}{}",
+                      p.integer("lights"), p.integer("unshadowed_factor"), withoutShadows, most,
+                      inputs.handles.density ? " where a medium has a grid" : ""));
     gpu::Device& device = inputs.gpuScene.device();
     samples_ = p.choice("sampling") == regions
                    ? shadow::EnvironmentSamples(device, inputs.scene.environment, p.real("region_threshold"))
                    : shadow::EnvironmentSamples(device, environment, lights_);
     samplesHandle_ = graph.importBuffer("samples of the environment", samples_.buffer());
-    if (p.choice("unshadowed") != lights || p.choice("combine") == add) return;
-    unshadowed_ =
-        shadow::EnvironmentSamples(device, environment, p.integer("lights") * p.integer("unshadowed_factor"));
+    if (!asSamples) return;
+    unshadowed_ = shadow::EnvironmentSamples(device, environment, withoutShadows);
     unshadowedHandle_ = graph.importBuffer("samples of the unshadowed light", unshadowed_.buffer());
   }
 
@@ -235,8 +245,7 @@ class SubtractiveShadows : public Technique {
       const bool everyPixel = blocks_.side() == 1;
       TechniqueInputs items = inputs_;
       items.size = blocks_.grid();
-      for (const shadow::SampleBatch& batch :
-           shadow::sampleBatches(technique_.samples_, inputs_.parameters)) {
+      for (const shadow::SampleBatch& batch : shadow::sampleBatches(technique_.samples_, inputs_)) {
         shadow::VisibilityPass pass =
             shadow::environmentSamplePass(inputs_, info.name, technique_.samples_, technique_.samplesHandle_,
                                           batch, "techniques/subtractive_shadows/shadow_buffer.comp.glsl");

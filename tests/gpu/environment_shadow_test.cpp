@@ -1,8 +1,11 @@
 // The environment with shadows: area lights that stand for it, and techniques that answer it as a whole.
 #include <algorithm>
+#include <utility>
 
 #include "core/base/error.h"
+#include "core/scene/density_grid.h"
 #include "tests/gpu/environment_harness.h"
+#include "tests/support/density_grids.h"
 
 namespace limn {
 namespace {
@@ -79,6 +82,23 @@ TEST_F(EnvironmentShadowTest, CoatsMirrorWhatIsNotHidden) {
       const Image picture = this->picture(renderer, settings(16, 12, Term::direct, {sampled(name, 64)}));
       for (const float v : picture.data()) EXPECT_NEAR(v, hidden ? 0 : 2, 0.02f) << name << hidden;
     }
+  }
+}
+
+/// As in references, nothing is mirrored where the shading normal is turned away from the viewer.
+TEST_F(EnvironmentShadowTest, CoatsTurnedAwayMirrorNothing) {
+  scene::Scene turned = mirror();
+  turned.meshes[0].primitives[0].normals.assign(4, {0, -1, 0});
+  const scene::Scene scene = lit(std::move(turned), uniform(2), 0);
+  render::Renderer renderer(device(), scene);
+  const render::Settings bare = settings(16, 12, Term::direct);
+  expectWithin(reference(scene, bare, 1), 0, 0);
+  expectWithin(picture(renderer, bare), 0, 0);
+  for (const std::string& name : shadowingTechniques()) {
+    SCOPED_TRACE(name);
+    render::Settings s = bare;
+    s.techniques = {sampled(name, 64)};
+    expectWithin(picture(renderer, s), 0, 0);
   }
 }
 
@@ -246,6 +266,29 @@ TEST_F(EnvironmentShadowTest, BatchesOfSamplesShareMemory) {
     };
     EXPECT_LT(bytes("2"), bytes("32") - (24 << 20)) << name;
   }
+}
+
+/// The way of each sample's light through a grid takes up to 65 steps of the loops of which llvmpipe leaves
+/// all after 65,535. Ways from the middle of the floor to an upper corner of this one take 40.
+TEST_F(EnvironmentShadowTest, ManySamplesShineThroughTheGridOfAMedium) {
+  const vec3 sun = glm::normalize(vec3(1));
+  scene::Scene scene =
+      lit(floor(),
+          test::environmentOf(64, [&](vec3 d) { return vec3(glm::dot(d, sun) > 0.95f ? 10.f : 0.f); }), 0);
+  scene.medium.sigmaA = vec3(0.01f);
+  scene::setGrid(scene.medium,
+                 test::gridOf({2, 2, 2}, {-20, 0, -20}, {20, 20, 20}, [](vec3) { return 1.f; }));
+  render::Renderer renderer(device(), scene);
+  const auto with = [&](const char* memory) {
+    return picture(
+        renderer,
+        settings(8, 6, Term::direct,
+                 {technique("sampled_environment_light",
+                            {{"samples", "2048"}, {"shadow_map_size", "16"}, {"memory", memory}})}));
+  };
+  const Image apart = with("1"), together = with("4096");
+  EXPECT_GT(mean(apart), 0);
+  EXPECT_LT(rmse(together, apart), 1e-4 * mean(apart));
 }
 
 /// Also of coats, whose mirrors are seen as far as the samples of all batches are.

@@ -36,6 +36,12 @@ TEST(SampleBatches, MapsOfABatchTakeNoMoreLayersThanATextureHas) {
   EXPECT_LE(most(sampleBatches(1024, hemicube, 1024), hemicube), 2048);
 }
 
+TEST(SampleBatches, BatchesHaveNoMoreSamplesThanALoopMayTake) {
+  const SampleLayers one{.each = 1, .size = 16};
+  EXPECT_EQ(most(sampleBatches(4096, one, 4096), one), 2048);
+  EXPECT_LE(most(sampleBatches(4096, one, 4096, 454), one), 454);
+}
+
 TEST(SampleBatches, OneSampleIsHeldHoweverLittleMemoryThereIs) {
   EXPECT_EQ(sampleBatches(3, {.each = 6, .size = 4096}, 1).size(), 3u);
 }
