@@ -22,7 +22,7 @@ uniform sampler2DArray history_light;
 uniform usampler2DArray history_surfaces;
 layout(rgba32f) writeonly uniform image2DArray averaged;  // rgb: sum over frames; a: their number
 uniform int frame_count;  // before this one, the oldest first
-uniform int frames_kept;  // of so many frames a picture is the mean; the frame of that age had the samples of this one
+uniform int frames_kept;  // a picture is the mean of this many; the frame of that age had the samples of this one
 
 const float least_cosine = 0.8;    // of the angle between normals
 const float least_weight = 0.1;    // of neighbours that show the same place, for a frame to count

@@ -1,7 +1,7 @@
 // V as the share of a light's points that shadow rays reach: the points of the R2 sequence, shifted on the torus by blue noise.
 //
 // FRAMES: frame i sends its rays to set i % FRAMES of as many sets of points, which follow each other in the sequence. TRACED:
-// format of the result; of four channels rgb is V and a is 1 where something is seen.
+// format of the result; of four channels rgb / a is V, and a is 0 where nothing is seen.
 #include "glsl/light/light_view.glsl"
 #include "glsl/numeric/sampling.glsl"
 #include "glsl/rays/ray_trace.glsl"
@@ -64,6 +64,17 @@ float lit_share(LightView view, ShadowRays r, vec2 shift) {
   return sent == 0 ? 1.0 : float(lit) / float(sent);
 }
 
+// What V is weighted by for frames after this one (core/history/frame_history.h). Rays to lights with extent are a part of all
+// that a frame sends to a place: as the camera moves, the place comes to a pixel with another shift. That V differs there is noise,
+// and no light that changed.
+float share_of_frame() {
+#if FRAMES > 1
+  for (int i = 0; i < LIGHT_COUNT; ++i)
+    if (light_has_extent(lights[light_indices[i]])) return 0.5;
+#endif
+  return 1.0;
+}
+
 void main() {
   ivec3 at = ivec3(gl_GlobalInvocationID);
   if (any(greaterThanEqual(at, imageSize(visibility)))) return;
@@ -91,5 +102,5 @@ void main() {
       v = lit_share(view, r, texelFetch(blue_noise, at.xy % textureSize(blue_noise, 0), 0).xy);
     }
   }
-  imageStore(visibility, at, vec4(vec3(v), depth > 0.0 ? 1.0 : 0.0));
+  imageStore(visibility, at, share_of_frame() * vec4(vec3(v), depth > 0.0 ? 1.0 : 0.0));
 }

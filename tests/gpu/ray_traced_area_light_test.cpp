@@ -123,6 +123,31 @@ TEST_F(RayTracedAreaLightTest, FramesOfAHistoryAddTheirRays) {
   }
 }
 
+/// As the camera turns, a place comes to pixels whose rays have other shifts. The noise between them is no
+/// light that changes: k frames count, whose mean has 1 / sqrt(k) of the noise, and less where neighbours
+/// share in it.
+TEST_F(RayTracedAreaLightTest, FramesOfAHistoryCountAsTheCameraTurns) {
+  const scene::Scene scene = asset("balls");
+  render::Renderer renderer(device(), scene);
+  const scene::CameraPose last = renderer.pose().cameras.at(0);
+  const Image exact = truth(renderer, scene, 0);
+  render::Settings s = rays(1);
+  s.techniques[0].parameters.set("history", "4");
+  const auto error = [&](int frames) {
+    renderer.configure(s);
+    for (int frame = frames - 1; frame >= 0; --frame) {
+      scene::CameraPose camera = last;
+      camera.worldToView =
+          glm::rotate(glm::mat4(1), glm::radians(0.5f * static_cast<float>(frame)), glm::vec3(0, 1, 0)) *
+          last.worldToView;
+      renderer.setCamera(camera);
+      renderer.render();
+    }
+    return difference(renderer.read(), exact);
+  };
+  EXPECT_LT(error(8), 0.6 * error(1));
+}
+
 TEST_F(RayTracedAreaLightTest, LightsWithoutExtentPassTheFilter) {
   const scene::Scene scene = asset("lights");
   render::Renderer renderer(device(), scene);
