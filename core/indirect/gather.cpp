@@ -151,7 +151,7 @@ void Gather::declareShading(frame::PassBuilder& pass, ShadePass& shade, const GB
   shade.program.defines["LAMBERTIAN"] = lambertian_ ? "1" : "0";
 }
 
-/// Returns the passes that shade, whose threads take the lights of so many sub-buffers: one pass, but for
+/// Returns the passes that shade, whose threads take the lights of a number of sub-buffers: one pass, but for
 /// software renderers. A pass ends where a sub-buffer does, where it can, since areas begin again there. With
 /// a map for each light there is one pass, as an array has fewer layers than a loop has steps.
 std::vector<ShadePass> Gather::passesOf(const ShadePass& shade, int subBuffers) const {
@@ -271,10 +271,11 @@ TextureHandle Gather::merge(TextureHandle shaded) {
   return merged;
 }
 
-/// Declares one direction of a blur. `last`: the one that completes the blur of interleaved pixels, after
-/// which the residual is folded in where the bound falls, and the specular part has its colour again.
-TextureHandle Gather::blur(std::string_view name, TextureHandle from, int width, int stride, int firstPart,
-                           int endPart, bool vertical, bool last) {
+/// Declares one direction of a blur of the last `blurredParts` parts of `from`; the result has no others.
+/// `last`: the one that completes the blur of interleaved pixels, after which the residual is folded in where
+/// the bound falls, and the specular part has its colour again.
+TextureHandle Gather::blur(std::string_view name, TextureHandle from, int width, int stride, int blurredParts,
+                           bool vertical, bool last) {
   const bool fold = last && falling_, colours = last && specular_;
   frame::PassBuilder pass = graph_.addPass(name, technique_);
   pass.read(inputs_.handles.frame, Access::uniformBuffer, "FrameBlock", "camera, scene extent")
@@ -285,14 +286,15 @@ TextureHandle Gather::blur(std::string_view name, TextureHandle from, int width,
     pass.read(inputs_.gbuffer.depth, Access::sampled, kGBufferNames.depth, "positions")
         .read(inputs_.gbuffer.normal, Access::sampled, kGBufferNames.normal, "normals");
   }
-  const TextureHandle to = pass.write(screen(name, inputs_.size, fold ? parts() - 1 : parts()),
+  const TextureHandle to = pass.write(screen(name, inputs_.size, blurredParts - (fold ? 1 : 0)),
                                       Access::imageStore, "blurred", "sums over like neighbours");
-  gpu::ProgramDesc description{.files = {"glsl/indirect/blur.comp.glsl"},
-                               .defines = {{"VERTICAL", vertical ? "1" : "0"},
-                                           {"FOLD", fold ? "1" : "0"},
-                                           {"COLOURS", colours ? "1" : "0"},
-                                           {"PARTS_FIRST", std::to_string(firstPart)},
-                                           {"PARTS_END", std::to_string(endPart)}}};
+  gpu::ProgramDesc description{
+      .files = {"glsl/indirect/blur.comp.glsl"},
+      .defines = {{"VERTICAL", vertical ? "1" : "0"},
+                  {"FOLD", fold ? "1" : "0"},
+                  {"COLOURS", colours ? "1" : "0"},
+                  {"PARTS", std::to_string(blurredParts)},
+                  {"FIRST_LAYER", std::to_string(graph_.desc(from).layers - blurredParts)}}};
   defineParts(description);
   const auto program = pass.program(description);
   pass.execute([=, settings = settings_, size = inputs_.size](frame::PassContext& context) {
@@ -313,10 +315,10 @@ TextureHandle Gather::finish(TextureHandle target) {
   if (blurred_) {
     const TextureHandle interleaved = gathered;
     const int width = settings_.block;
-    const TextureHandle rows = blur("blur", interleaved, width, 1, 0, parts(), false, false);
-    gathered = blur("blur", rows, width, 1, 0, parts(), true, true);
+    const TextureHandle rows = blur("blur", interleaved, width, 1, parts(), false, false);
+    gathered = blur("blur", rows, width, 1, parts(), true, true);
     if (edges_) {
-      const TextureHandle columns = blur("blur", interleaved, width, 1, 0, parts(), true, false);
+      const TextureHandle columns = blur("blur", interleaved, width, 1, parts(), true, false);
       gathered = shadeEdges(rows, columns, gathered);
     }
   } else {
@@ -340,7 +342,7 @@ TextureHandle Gather::finish(TextureHandle target) {
   for (bool more = residual_; more; more = reach < inputs_.size.y / kSpreadShare) {
     const int stride = std::max(1, reach / 2);
     for (const bool vertical : {false, true})
-      spread = blur("spread residual", spread, kSpreadWidth, stride, parts() - 1, parts(), vertical, false);
+      spread = blur("spread residual", spread, kSpreadWidth, stride, 1, vertical, false);
     reach += kSpreadWidth * stride;
   }
 

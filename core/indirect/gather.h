@@ -142,7 +142,7 @@ class LIMN_API Gather {
   frame::TextureHandle addEdgePass(ShadePass shade, frame::TextureHandle rows, frame::TextureHandle columns,
                                    frame::TextureHandle blurred, frame::TextureHandle target);
   frame::TextureHandle blur(std::string_view name, frame::TextureHandle from, int width, int stride,
-                            int firstPart, int endPart, bool vertical, bool last);
+                            int blurredParts, bool vertical, bool last);
 
   frame::FrameGraph& graph_;
   TechniqueInputs inputs_;

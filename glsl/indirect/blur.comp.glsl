@@ -11,7 +11,8 @@
 //
 // COLOURS 1: the specular part is per unit of specular reflectance (GATHER_COLOURLESS), by which it is multiplied here.
 //
-// PARTS_FIRST, PARTS_END: the parts blurred. VERTICAL 1: along columns.
+// PARTS: number of the parts that are blurred; the result holds no others. FIRST_LAYER: layer of `gathered` that holds the first of
+// them. VERTICAL 1: along columns.
 #include "glsl/surface/gbuffer_input.glsl"
 #include "glsl/surface/reflectance.glsl"
 #include "glsl/indirect/gather_parts.glsl"
@@ -48,8 +49,8 @@ void main() {
   float depth = pixel_depth(pixel);
   Centre centre = Centre(pixel_position(pixel, depth), normal_at(pixel), position_threshold * gather_extent(),
                          plane_threshold * gather_extent());
-  vec4 sums[PARTS_END - PARTS_FIRST];
-  for (int part = PARTS_FIRST; part < PARTS_END; ++part) sums[part - PARTS_FIRST] = vec4(0.0);
+  vec4 sums[PARTS];
+  for (int part = 0; part < PARTS; ++part) sums[part] = vec4(0.0);
 #if VERTICAL
   ivec2 axis = ivec2(0, stride);
 #else
@@ -66,11 +67,11 @@ void main() {
       if (one != other) weight = one ? vec2(1.0, 0.0) : vec2(0.0, 1.0);
       if (!one && !other) continue;
     }
-    for (int part = PARTS_FIRST; part < PARTS_END; ++part) {
+    for (int part = 0; part < PARTS; ++part) {
       vec4 sum = vec4(0.0);
-      if (weight.x > 0.0) sum = weight.x * texelFetch(gathered, ivec3(after, part), 0);
-      if (weight.y > 0.0) sum += weight.y * texelFetch(gathered, ivec3(before, part), 0);
-      sums[part - PARTS_FIRST] += sum;
+      if (weight.x > 0.0) sum = weight.x * texelFetch(gathered, ivec3(after, FIRST_LAYER + part), 0);
+      if (weight.y > 0.0) sum += weight.y * texelFetch(gathered, ivec3(before, FIRST_LAYER + part), 0);
+      sums[part] += sum;
     }
   }
 #if FOLD
@@ -82,6 +83,5 @@ void main() {
                                                                       surface.specular_factor, surface.specular_colour,
                                                                       surface.ior));
 #endif
-  for (int part = PARTS_FIRST; part < PARTS_END - FOLD; ++part)
-    imageStore(blurred, ivec3(pixel, part), sums[part - PARTS_FIRST] / float(width));
+  for (int part = 0; part < PARTS - FOLD; ++part) imageStore(blurred, ivec3(pixel, part), sums[part] / float(width));
 }

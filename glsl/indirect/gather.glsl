@@ -28,7 +28,7 @@ LIMN_FN float gather_residual(float d2, float nearest2, float least) {
 }
 
 // --- The same for lights that stand for a patch of `area` m^2 as wide as they are high: 1 / (d^2 + area / pi), which is exact
-// above the middle of a disc. patch2: area / pi, of so many lights as a pixel is the mean of ---
+// above the middle of a disc. patch2: area / pi, of as many lights as a pixel is the mean of ---
 
 LIMN_FN float gather_patch_geometry(float towards_light, float towards_receiver, float d2, float patch2) {
   return towards_light * towards_receiver / max(d2 * (d2 + patch2), 1e-37f);

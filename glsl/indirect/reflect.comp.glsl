@@ -5,7 +5,7 @@
 layout(local_size_x = 8, local_size_y = 8) in;
 uniform sampler2DArray gathered;
 #if GATHER_RESIDUAL
-uniform sampler2DArray spread;  // the residual is taken from here
+uniform sampler2DArray spread;  // the residual alone
 #endif
 layout(rgba32f) uniform image2D radiance;
 
@@ -19,7 +19,7 @@ void main() {
   if (sum.a == 0.0 || (surface.flags & gbuffer_flag_specular) != 0u) return;
   vec3 diffuse = value_of(sum);
 #if GATHER_RESIDUAL
-  diffuse += value_of(texelFetch(spread, ivec3(pixel, gather_part_residual), 0));
+  diffuse += value_of(texelFetch(spread, ivec3(pixel, 0), 0));
 #endif
   vec3 light = surface.base_colour * (1.0 - surface.metallic) * diffuse;
 #if GATHER_SPECULAR

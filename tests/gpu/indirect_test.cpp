@@ -418,6 +418,16 @@ TEST_F(TwiceLitTest, WhatEntersHasNoSpecularPart) {
   EXPECT_EQ(layers(renderer, "shade 2"), 1);
 }
 
+/// Of the parts of the light, compensation spreads one: the others are not kept beside it.
+TEST_F(TwiceLitTest, WhatTheClampTookIsSpreadAlone) {
+  const scene::Scene scene = asset("milk");
+  render::Renderer renderer(device(), scene);
+  all(renderer, "reflective_shadow_map", {{"vpls", "64"}, {"compensation", "true"}});
+  EXPECT_EQ(layers(renderer, "shade"), 3) << "diffuse, specular, residual";
+  for (const char* name : {"spread residual", "spread residual 2"})
+    EXPECT_EQ(layers(renderer, name), 1) << name;
+}
+
 /// Mirrors and glass take no light, and of a material that nothing is drawn with there is none.
 TEST_F(TwiceLitTest, LambertianSurfacesHaveNoSpecularPartBesideGlassAndUnusedMaterials) {
   scene::Scene scene = asset("glass_sphere");
