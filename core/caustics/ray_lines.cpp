@@ -2,6 +2,8 @@
 
 #include <algorithm>
 #include <array>
+#include <cmath>
+#include <glm/glm.hpp>
 
 #include "core/caustics/ray_lists.h"
 #include "core/gpu_scene/gpu_medium.h"
@@ -28,6 +30,16 @@ bool refracts(const scene::Scene& scene) {
   return std::ranges::any_of(scene.materials, [](const scene::Material& material) {
     return material.specularSurface() && material.transmission > 0;
   });
+}
+
+/// How far the camera's picture lies aside since its frame is a sample beside the middle of the pixels, which
+/// shears its matrix by up to half a pixel (render::shifted). A thousandth of a pixel is rounding.
+glm::vec2 sampleShift(const scene::GpuScene& scene) {
+  const glm::dmat3 axes = glm::transpose(glm::dmat3(glm::dmat4(scene.camera().worldToView)));
+  const glm::dvec2 shift(glm::dot(axes[0], axes[2]), glm::dot(axes[1], axes[2]));
+  const double pixel = glm::length(glm::dvec3(glm::vec3(scene.frame().view_ray_dx)));
+  const double pixels = std::max(std::abs(shift.x), std::abs(shift.y)) / pixel;
+  return pixels > 1e-3 && pixels < 0.5 ? glm::vec2(shift) : glm::vec2(0);
 }
 
 /// Which rays are drawn as lines, points and quads.
@@ -60,6 +72,7 @@ Shapes addShapes(frame::FrameGraph& graph, const TechniqueInputs& inputs, const 
            [&scene = inputs.gpuScene, beams = draw.beams, cosine = draw.beamCosine,
             size = rays.size](gpu::Program& kernel) {
              kernel.set("near_plane", scene.camera().near);
+             setSampleShift(kernel, scene);
              if (!beams) return;
              kernel.set("buffer_size", size);
              kernel.set("beam_cosine", cosine);
@@ -97,6 +110,12 @@ CausticRays requestRays(frame::FrameGraph& graph, const TechniqueInputs& inputs,
   if (!dark && !rays.rays) dark = "no light meets a specular surface";
   if (dark) graph.leaveOut(pass, technique, dark);
   return rays;
+}
+
+void setSampleShift(gpu::Program& program, const scene::GpuScene& scene) {
+  const glm::vec2 shift = sampleShift(scene);
+  program.set("sample_shift_x", shift.x);
+  program.set("sample_shift_y", shift.y);
 }
 
 frame::BufferHandle RayLines::addRule(frame::FrameGraph& graph, std::string_view technique) {
@@ -164,6 +183,7 @@ frame::TextureHandle RayLines::add(frame::FrameGraph& graph, const TechniqueInpu
     for (unsigned kind = 0; kind < programs.size(); ++kind) {
       gpu::Program& program = context.use(programs[kind]);
       const GLenum primitive = primitives[kind];
+      setSampleShift(program, scene);
       // Quads are drawn as "ray kinds" shaped them.
       if (primitive != GL_TRIANGLE_STRIP) program.set("near_plane", scene.camera().near);
       if (primitive == GL_LINES || (beams && primitive == GL_POINTS)) program.set("buffer_size", size);

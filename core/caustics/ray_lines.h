@@ -58,6 +58,10 @@ LIMN_API CausticRays requestRays(frame::FrameGraph& graph, const TechniqueInputs
                                  const TermRequest& request, std::string_view pass,
                                  std::string_view technique);
 
+/// Sets what a program takes whose shaders include glsl/caustics/sample_shift.glsl: where the camera's frame
+/// lies among the samples of its pixels.
+LIMN_API void setSampleShift(gpu::Program& program, const scene::GpuScene& scene);
+
 struct LineDraw {
   std::string_view technique;
   std::string fragmentShader;  ///< includes glsl/caustics/line_fragment.glsl

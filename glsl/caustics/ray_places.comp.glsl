@@ -1,4 +1,4 @@
-// Where in the lists the rays of each group begin, and what draws the lists: one work group of LENGTH threads, which take so many
+// Where in the lists the rays of each group begin, and what draws the lists: one work group of LENGTH threads, which take LENGTH
 // groups of rays at a time. RAY_VERTICES: uvec3, vertices of each ray, by kind; INSTANCE_RAYS: uvec3, 1 where each ray is an
 // instance.
 #include "glsl/caustics/ray_runs.glsl"

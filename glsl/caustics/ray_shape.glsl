@@ -5,6 +5,7 @@
 #include "glsl/caustics/caustic_line.glsl"
 #include "glsl/caustics/ray_beam.glsl"
 #include "glsl/caustics/ray_runs.glsl"
+#include "glsl/caustics/sample_shift.glsl"
 #include "glsl/media/medium_input.glsl"
 
 uniform float near_plane;  // metres
@@ -13,14 +14,9 @@ const uint ray_kind_line = 0u;   // of one pixel
 const uint ray_kind_point = 1u;  // shorter than a pixel
 const uint ray_kind_quad = 2u;   // as wide as its beam, which is wider than a pixel
 
-vec3 camera_space(vec3 world) {
-  vec3 view = (frame.world_to_view * vec4(world, 1.0)).xyz;
-  return vec3(view.xy, -view.z);
-}
-vec3 camera_direction(vec3 world) {
-  vec3 view = mat3(frame.world_to_view) * world;
-  return vec3(view.xy, -view.z);
-}
+vec3 camera_axes(vec3 view) { return vec3(view.xy - sample_shift() * view.z, -view.z); }
+vec3 camera_space(vec3 world) { return camera_axes((frame.world_to_view * vec4(world, 1.0)).xyz); }
+vec3 camera_direction(vec3 world) { return camera_axes(mat3(frame.world_to_view) * world); }
 float focal_length() { return 1.0 / length(frame.view_ray_dx.xyz); }  // pixels
 // Of the picture, half of it, on the view plane at distance 1.
 vec2 picture_reach() {

@@ -4,6 +4,7 @@
 #define LIMN_SPECULAR_VIEW_GLSL
 #include "glsl/surface/brdf.glsl"
 #include "glsl/numeric/language.glsl"
+#include "glsl/scene/media.glsl"
 LIMN_BEGIN
 
 // Two lookups of the environment: radiance = reflected * L(reflection) + transmitted * L(refraction).
@@ -31,8 +32,7 @@ LIMN_FN SpecularView specular_view(SurfaceBrdf s, vec3 base_colour, float metall
   if (thickness > 0.0f) {
     vec3 bent = refract(-v, n, 1.0f / max(ior, 1.0f));
     if (dot(bent, bent) > 0.0f) r.refraction = normalize(bent);
-    if (attenuation_distance > 0.0f)
-      r.transmitted *= pow(max(attenuation_colour, vec3(1e-6f)), vec3(thickness / attenuation_distance));
+    r.transmitted *= body_absorption(attenuation_colour, attenuation_distance, thickness);
   }
   return r;
 }

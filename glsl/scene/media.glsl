@@ -123,12 +123,17 @@ LIMN_FN vec3 optics_transmittance(Optics o, float cosine, float n1, float n2) {
   return o.base * (o.transmission * (1.0f - o.metallic) * (1.0f - fresnel_reflectance(cosine, n1, n2)));
 }
 
-// Over a length inside the body.
-LIMN_FN vec3 optics_absorption(Optics o, float length_inside) {
-  if (!(o.attenuation_distance > 0.0f)) return vec3(1.0f);
-  float exponent = length_inside / o.attenuation_distance;
-  vec3 colour = max(o.attenuation, vec3(1e-6f));
+// What a body leaves over a length inside it, of which it leaves `attenuation` over attenuation_distance (0: it is clear). Over
+// 1e10 such distances nothing is left of any colour below 1. Their number may exceed all floats, and GLSL defines no such power
+// of 1, which is what white glass leaves.
+LIMN_FN vec3 body_absorption(vec3 attenuation, float attenuation_distance, float length_inside) {
+  if (!(attenuation_distance > 0.0f)) return vec3(1.0f);
+  float exponent = min(length_inside / attenuation_distance, 1e10f);
+  vec3 colour = max(attenuation, vec3(1e-6f));
   return vec3(pow(colour.x, exponent), pow(colour.y, exponent), pow(colour.z, exponent));
+}
+LIMN_FN vec3 optics_absorption(Optics o, float length_inside) {
+  return body_absorption(o.attenuation, o.attenuation_distance, length_inside);
 }
 
 LIMN_END

@@ -1,12 +1,15 @@
 // Irradiance of one photon on the surface that a pixel of the screen shows, or a texel of the light's map (CAUSTIC_MAP 1):
 // Epanechnikov's kernel over the distance across the ray, in an ellipse as the rays beside it have it (photon differentials:
-// Schjoeth et al. 2007).
+// Schjoeth et al. 2007). TRANSLUCENT 1: some surfaces of the screen are translucent.
 #if CAUSTIC_MAP
 #include "techniques/surface_caustics/caustic_map.glsl"
 
 uniform int map_layer;
 #else
 #include "glsl/surface/gbuffer_input.glsl"
+#endif
+#if TRANSLUCENT
+#include "glsl/diffusion/boundary.glsl"
 #endif
 
 layout(location = 0) flat in vec4 photon;
@@ -16,6 +19,19 @@ layout(location = 3) flat in vec3 kernel_x;
 layout(location = 4) flat in vec3 kernel_y;
 
 layout(location = 0) out vec4 irradiance;
+
+#if TRANSLUCENT
+
+// How much of light at this cosine enters a translucent surface, over the mean of light from all sides, which reflect.comp.glsl
+// takes. 1 for other surfaces.
+float entering_over_mean(ivec2 pixel, float cosine) {
+  vec4 constants = texelFetch(gbuffer_material, pixel, 0);
+  if ((gbuffer_stored_flags(constants) & gbuffer_flag_translucent) == 0u) return 1.0;
+  DiffusionBoundary boundary = diffusion_boundary(gbuffer_stored_ior(constants));
+  return diffusion_entry(boundary, cosine) / boundary.entering;
+}
+
+#endif
 
 void main() {
   ivec2 pixel = ivec2(gl_FragCoord.xy);
@@ -35,5 +51,8 @@ void main() {
   // Along the ray, no further than a plane goes within the kernel: not to what lies before or behind.
   bool near = abs(dot(away, incidence.xyz)) * incidence.w <= photon.w;
   if (!(cosine > 0.0 && near && square < 1.0)) discard;
+#if TRANSLUCENT
+  cosine *= entering_over_mean(pixel, cosine);
+#endif
   irradiance = vec4(peak * (cosine * (1.0 - square)), 0.0);
 }

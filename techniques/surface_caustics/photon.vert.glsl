@@ -9,6 +9,8 @@
 #include "techniques/surface_caustics/caustic_map.glsl"
 
 uniform int map_layer;
+#else
+#include "glsl/caustics/sample_shift.glsl"
 #endif
 
 uniform float kernel;  // half-diameters in distances between photons
@@ -96,6 +98,11 @@ void main() {
   vec3 normal = octahedral_decode(unpackSnorm2x16(ray.normal));
   incidence.w = -dot(normal, ray.direction);
   Target target = target_at(place);
+#if !CAUSTIC_MAP
+  // What a sample of a pixel sees lies aside of what its middle shows: as far as this moves the photon on its surface.
+  vec2 pixels = sample_shift() / length(frame.view_ray_dx.xyz);
+  place += on_plane(pixels.x * target.pixel_x + pixels.y * target.pixel_y, normal, target.eye_ray, least_cosine);
+#endif
   Medium medium = scene_medium();
   vec3 flux = ray.power * medium_transmittance(medium, medium_length(medium, ray.start, ray.direction, ray.segment_length));
 

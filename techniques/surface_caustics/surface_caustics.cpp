@@ -61,6 +61,7 @@ struct Photons {
   frame::BufferHandle frame, mediumAlone;
   scene::MediumInput medium;
   float kernel, beamCosine;
+  bool translucent;  ///< some surfaces are
   frame::ProgramHandle program = {};
 
   Photons(frame::FrameGraph& graph, const TechniqueInputs& inputs, const caustics::CausticRays& made,
@@ -76,17 +77,19 @@ struct Photons {
         mediumAlone(inputs.handles.medium),
         medium(inputs.handles, inputs.parameters.integer("medium_steps")),
         kernel(inputs.parameters.real("kernel")),
-        beamCosine(inputs.parameters.real("beam_cosine")) {}
+        beamCosine(inputs.parameters.real("beam_cosine")),
+        translucent(inputs.gpuScene.hasTranslucent()) {}
 
-  /// Of a map nothing depends on the camera.
+  /// Of a map nothing depends on the camera, nor on what its surfaces are.
   void declare(frame::PassBuilder& pass, bool map) {
     pass.read(map ? mediumAlone : frame, Access::uniformBuffer, "FrameBlock",
               map ? "medium" : "camera, medium")
         .read(rays.rays, Access::storageLoad, "Rays", "photons");
     caustics::declareRayLists(pass, lists);
-    gpu::ProgramDesc desc{.files = {"techniques/surface_caustics/photon.vert.glsl",
-                                    "techniques/surface_caustics/photon.frag.glsl"},
-                          .defines = {{"CAUSTIC_MAP", map ? "1" : "0"}}};
+    gpu::ProgramDesc desc{
+        .files = {"techniques/surface_caustics/photon.vert.glsl",
+                  "techniques/surface_caustics/photon.frag.glsl"},
+        .defines = {{"CAUSTIC_MAP", map ? "1" : "0"}, {"TRANSLUCENT", translucent && !map ? "1" : "0"}}};
     medium.define(desc.defines);
     medium.declare(pass);
     program = pass.program(std::move(desc));
@@ -120,11 +123,13 @@ class SurfaceCaustics : public Technique {
         .read(inputs.gbuffer.normal, Access::sampled, kGBufferNames.normal, "cosines of receivers")
         .read(inputs.gbuffer.geometricNormal, Access::sampled, kGBufferNames.geometricNormal,
               "sides of receivers");
+    if (photons.translucent)
+      pass.read(inputs.gbuffer.material, Access::sampled, kGBufferNames.material, "what enters receivers");
     const frame::TextureHandle irradiance =
         pass.write(createIrradiance(graph, inputs.size), Access::colourAttachment, "flux per area");
-    pass.execute([=, this](frame::PassContext& context) {
+    pass.execute([=, this, &scene = inputs.gpuScene](frame::PassContext& context) {
       context.bindFramebuffer({{irradiance}});
-      photons.begin(context, empty_);
+      caustics::setSampleShift(photons.begin(context, empty_), scene);
       photons.draw(context);
     });
     return irradiance;
@@ -222,7 +227,8 @@ class SurfaceCaustics : public Technique {
         .read(irradiance, Access::sampled, "irradiance", "what arrives")
         .read(inputs.service<shading_maps::ShadingMapService>().ltcTable(), Access::sampled, "ltc_table",
               "what Fresnel's term leaves to the diffuse part");
-    gpu::ProgramDesc desc{.files = {"techniques/surface_caustics/reflect.comp.glsl"}, .defines = {}};
+    gpu::ProgramDesc desc{.files = {"techniques/surface_caustics/reflect.comp.glsl"},
+                          .defines = {{"TRANSLUCENT", inputs.gpuScene.hasTranslucent() ? "1" : "0"}}};
     const scene::SurfaceInput surfaces(inputs.handles, inputs.gbuffer);
     surfaces.define(desc.defines);
     surfaces.declare(pass);

@@ -304,6 +304,29 @@ TEST_F(SpecularTest, ExtremesStayFinite) {
   }
 }
 
+/// White glass is clear over however many of its attenuation distances: here over more than floats reach to,
+/// in the environment's picture, on the ways of light through the ball, and of what the camera sees in it.
+TEST_F(SpecularTest, WhiteGlassIsClearHoweverThickItIs) {
+  scene::Scene scene = bench::stressed(asset("glass_sphere"), StressChange::sceneScale, 1e4);
+  scene.environment = test::environmentOf(16, [](const vec3&) { return vec3(1); });
+  const auto seen = [&](float attenuationDistance, const std::vector<render::TechniqueUse>& techniques) {
+    for (scene::Material& material : scene.materials) {
+      if (!(material.transmission > 0)) continue;
+      material.thickness = 1e4f;
+      material.attenuationDistance = attenuationDistance;
+    }
+    render::Renderer renderer(device(), scene);
+    return picture(renderer, settings(64, 48, Term::final, techniques));
+  };
+  const std::vector<render::TechniqueUse> none,
+      all{technique("surface_caustics"), technique("volume_caustics"), refraction()};
+  for (const std::vector<render::TechniqueUse>& techniques : {none, all}) {
+    const Image clear = seen(0, techniques);
+    ASSERT_GT(mean(clear), 0);
+    EXPECT_LT(rmse(seen(1.2e-38f, techniques), clear), 1e-5 * mean(clear));
+  }
+}
+
 TEST_F(SpecularTest, ScalesOfTheSceneChangeNothing) {
   const scene::Scene scene = asset("gem");
   render::Renderer renderer(device(), scene);

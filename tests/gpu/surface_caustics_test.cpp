@@ -5,8 +5,10 @@
 #include <string>
 #include <vector>
 
+#include "core/render/supersample.h"
 #include "core/scene/camera.h"
 #include "core/scene/material_model.h"
+#include "glsl/diffusion/boundary.glsl"
 #include "tests/gpu/media_harness.h"
 #include "tests/support/scene_nodes.h"
 
@@ -183,6 +185,43 @@ TEST_F(SurfaceCausticsTest, FloorsWithAModelReflectTheirDiffusePart) {
   model.kd = glm::vec3(0.6f);
   paint(&model);
   EXPECT_NEAR(brightness() / matte, (1 - 0.04) * (1 - 0.596) / (1 - 0.6 * 0.596), 0.01);
+}
+
+/// A translucent floor shows a caustic by its local limit: of what enters, F_t of what arrives, A F_t / (1 -
+/// F_de) comes out. Maps of the light do not know where it comes from: what enters is 1 - F_de, the mean of
+/// F_t, in place of 3/4, which enters within 30 degrees of the normal. With an index of 3 and a camera that
+/// looks along the floor a Lambertian one of the same albedo would be 1.44 times as bright.
+TEST_F(SurfaceCausticsTest, TranslucentFloorsShowTheirLocalLimit) {
+  scene::Scene scene = asset("glass_sphere");
+  scene.medium = {};
+  for (scene::Material& m : scene.materials) {
+    if (m.specularSurface()) continue;
+    m = test::lambertian(0.6f);
+    m.ior = 3;
+    m.subsurface.emplace();
+  }
+  render::Renderer renderer(device(), scene);
+  const double truth = mean(reference(renderer, scene, Term::caustic, 64));
+  const auto ratio = [&](const char* splat) {
+    return mean(picture(renderer, settings(width, height, Term::caustic,
+                                           {technique("surface_caustics", {{"splat", splat}})}))) /
+           truth;
+  };
+  EXPECT_NEAR(ratio("screen"), 1, 0.02);
+  EXPECT_NEAR(ratio("light"), double(glsl::diffusion_boundary(3.f).entering) / 0.75, 0.02);
+}
+
+/// A photon has at least a pixel's width already: samples beside a pixel's middle do not move it, or a pixel
+/// would hold the mean over two (off by 0.024 here).
+TEST_F(SurfaceCausticsTest, PhotonsArePixelsWideHoweverManySamplesAPixelHas) {
+  scene::Scene scene = asset("glass_sphere");
+  scene.medium = {};
+  render::Renderer renderer(device(), scene);
+  renderer.configure(settings(width, height, Term::caustic, {technique("surface_caustics")}));
+  const scene::CameraPose camera = renderer.pose().cameras.at(0);
+  const Image one = render::supersample(renderer, camera, {width, height}, 1);
+  ASSERT_GT(mean(one), 0);
+  EXPECT_LT(relativeRms(render::supersample(renderer, camera, {width, height}, 2), one), 0.005);
 }
 
 /// The search for the end of a ray begins on the steep sides of what it leaves as well: points close together

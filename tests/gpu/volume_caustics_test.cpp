@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "core/render/supersample.h"
 #include "core/scene/camera.h"
 #include "tests/gpu/media_harness.h"
 #include "tests/support/scene_nodes.h"
@@ -63,6 +64,27 @@ TEST_F(VolumeCausticsTest, AnEyeAmongBeamsSeesWhatItsWayThroughThemScatters) {
       EXPECT_LE(most, 1.1);
     }
   }
+}
+
+/// A line puts into a pixel what the pixel's whole area has of it. Samples beside its middle do not move the
+/// line, or their mean would be that over two pixels: here of 256 lines whose pixels nothing else is in.
+TEST_F(VolumeCausticsTest, LinesArePixelsWideHoweverManySamplesAPixelHas) {
+  scene::Scene scene;
+  scene.medium.sigmaS = glm::vec3(0.01f);
+  scene::Material pane = test::glass(1);
+  pane.thickness = 0;
+  test::show(scene, test::quad({0, 2, 0}, {1, 0, 0}, {0, 0, -1}, test::addMaterial(scene, pane)));
+  test::show(scene,
+             test::quad({0, -2, 0}, {2, 0, 0}, {0, 0, -2}, test::addMaterial(scene, test::lambertian(0))));
+  test::shine(scene, test::lamp(glsl::light_directional, 1), {0, 3, 0}, {0.1f, -1, 0.03f});
+  render::Renderer renderer(device(), scene);
+  const scene::CameraPose camera = scene::lookAt({0.1f, 0.2f, 4}, {0, 0, 0}, 0.4f);  // beside pane and floor
+  renderer.configure(settings(
+      width, height, Term::media,
+      {technique("volume_caustics", {{"buffer_size", "16"}, {"beams", "false"}, {"paths", "refraction"}})}));
+  const Image one = render::supersample(renderer, camera, {width, height}, 1);
+  ASSERT_GT(mean(one), 0);
+  EXPECT_LT(relativeRms(render::supersample(renderer, camera, {width, height}, 4), one), 0.05);
 }
 
 /// From the lamp to the ball light goes 2.3 m through the medium, which leaves exp(-391) of it: less than any
