@@ -7,6 +7,7 @@ namespace {
 
 // Tuned like the constants of tune_search.cpp.
 constexpr double kShare = 0.15;          // of the exhaustive grid's cost that a search may take
+constexpr double kMostCounted = 1000;    // settings of the grid: beyond, more looks find no better answers
 constexpr double kMeasuredShare = 0.06;  // of the settings that are measured in full
 constexpr double kCheckedShare = 0.55;   // of what is left for checks and looks
 constexpr double kCheapCheck = 1.0 / 3;  // of a full measurement's cost: dearer checks save nothing
@@ -38,6 +39,8 @@ TuneAllowance allowanceOf(std::span<const TuneSpace> spaces, const TunePlan& pla
     settings += static_cast<double>(settingCount(space));
     star += starCount(space);
   }
+  // Grids grow with the power of their parameters, what a search has to know of them with their number.
+  settings = std::min(settings, kMostCounted);
   const double look = costOf(plan.look), check = costOf(plan.check), full = costOf(plan.full);
   const auto whole = [](double count) { return static_cast<std::size_t>(std::clamp(count, 0.0, 1e9)); };
   TuneAllowance allowance;

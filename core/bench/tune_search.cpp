@@ -20,6 +20,7 @@ constexpr double kNearAbove = 2;          // the same above it
 constexpr double kLookReach = 1.5;        // how far above the limit a look may be wrong
 constexpr double kCheckReach = 1.1;       // the same of a check
 constexpr std::size_t kLeastLeading = 2;  // settings of a technique that a walk goes on from
+constexpr double kMostAtOnce = 64;        // looks between two steps: more of them would be near the defaults
 constexpr std::size_t kMostMeasured = 12;
 
 // A predicted setting that misses the limit by a factor x counts as x to this power: errors are predicted
@@ -58,7 +59,7 @@ class Search {
       result_.looked += batch.size();
       take(batch, effort, [](Known&) {});
       const double left = std::max(0.0, static_cast<double>(count) - looksSpent());
-      batch = likeliest(neighbours(), std::ceil(left / 2));
+      batch = likeliest(neighbours(), std::min(std::ceil(left / 2), kMostAtOnce));
     }
   }
 

@@ -16,7 +16,7 @@ struct TuneAllowance {
 };
 
 /// Returns what a search within a share of the grid's cost may measure; never less than what it needs to know
-/// anything.
+/// anything, and of a grid of more than 1000 settings as much as of 1000.
 TuneAllowance allowanceOf(std::span<const TuneSpace> spaces, const TunePlan& plan);
 
 }  // namespace limn::bench
