@@ -8,6 +8,7 @@
 #include <utility>
 
 #include "core/base/error.h"
+#include "core/base/json_depth.h"
 #include "core/base/text.h"
 #include "core/bench/markdown_text.h"
 #include "core/gpu/format.h"
@@ -409,6 +410,7 @@ std::string toJson(const FrameRecord& frame, const std::vector<std::string>& fil
 }
 
 std::optional<std::vector<std::string>> filesOf(const std::string& json) {
+  if (isTooDeepJson(json)) return std::nullopt;
   const Json read = Json::parse(json, nullptr, false);
   if (!read.is_object() || read.value("generator", Json()) != kGenerator) return std::nullopt;
   std::vector<std::string> files;

@@ -11,6 +11,7 @@
 
 #include "core/base/error.h"
 #include "core/base/file.h"
+#include "core/base/json_depth.h"
 #include "core/bench/private/columns.h"
 #include "core/bench/private/comparison.h"
 #include "core/bench/private/misjudged_table.h"
@@ -268,7 +269,8 @@ Json stability(const std::filesystem::path& folder) {
   const std::filesystem::path file = folder / "stress.json";
   std::error_code ignored;
   if (!std::filesystem::is_regular_file(file, ignored)) return {};
-  Json json = Json::parse(readTextFile(file), nullptr, false);
+  const std::string text = readTextFile(file);
+  Json json = Json::parse(isTooDeepJson(text) ? "" : text, nullptr, false);
   if (json.is_discarded()) throw Error(fmt::format("{}: not what limn stress writes", file.string()));
   if (!json.contains("results") || !json["results"].is_array()) return json;
   keepObjects(json["results"]);

@@ -6,6 +6,7 @@
 #include <nlohmann/json.hpp>
 
 #include "core/base/error.h"
+#include "core/base/json_depth.h"
 #include "core/bench/private/comparison.h"
 #include "core/bench/private/misjudged_table.h"
 #include "core/bench/private/provenance_json.h"
@@ -176,6 +177,8 @@ std::string toJson(const Row& row) {
 }
 
 Row rowFromJson(const std::string& line) {
+  if (isTooDeepJson(line))
+    throw Error(fmt::format("not a row of results: JSON nested deeper than {} levels", kMaxJsonDepth));
   try {
     const Json json = Json::parse(line);
     Row row;

@@ -10,6 +10,7 @@
 #include <nlohmann/json.hpp>
 
 #include "core/base/error.h"
+#include "core/base/json_depth.h"
 #include "core/base/text.h"
 #include "core/scene_io/private/document.h"
 #include "core/scene_io/private/document_schema.h"
@@ -20,7 +21,6 @@ namespace {
 
 using nlohmann::json;
 
-constexpr int kMaxDepth = 64;
 constexpr std::uint64_t kMaxFileBytes = std::uint64_t{1} << 34;
 
 // clang-format off
@@ -67,26 +67,6 @@ std::uint32_t word(std::span<const std::byte> bytes, std::size_t at) {
   std::uint32_t value = 0;
   for (std::size_t i = 0; i < 4; ++i) value |= std::to_integer<std::uint32_t>(bytes[at + i]) << (8 * i);
   return value;
-}
-
-/// Counts nesting without recursion.
-bool tooDeep(std::string_view text) {
-  int depth = 0;
-  bool quoted = false;
-  for (std::size_t i = 0; i < text.size(); ++i) {
-    const char c = text[i];
-    if (quoted) {
-      if (c == '\\') ++i;
-      if (c == '"') quoted = false;
-    } else if (c == '"') {
-      quoted = true;
-    } else if (c == '{' || c == '[') {
-      if (++depth > kMaxDepth) return true;
-    } else if (c == '}' || c == ']') {
-      --depth;
-    }
-  }
-  return false;
 }
 
 /// Every number must survive the conversion to int where tinygltf wants one: an integer outside 53 bits never
@@ -230,7 +210,7 @@ void cleanNames(json& entries) {
 }  // namespace
 
 void Loader::parse(const Container& container, tinygltf::Model& model) {
-  if (tooDeep(container.json)) fail(fmt::format("JSON nested deeper than {} levels", kMaxDepth));
+  if (isTooDeepJson(container.json)) fail(fmt::format("JSON nested deeper than {} levels", kMaxJsonDepth));
   Document document;
   json& root = document.root;
   try {

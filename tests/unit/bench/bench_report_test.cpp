@@ -7,6 +7,7 @@
 #include <nlohmann/json.hpp>
 #include <set>
 
+#include "core/base/error.h"
 #include "core/base/file.h"
 #include "core/bench/private/report_pictures.h"
 #include "core/bench/report.h"
@@ -254,6 +255,13 @@ TEST_F(BenchReport, OnlyObjectsOfTheStressTableArePassedOn) {
     writeTextFile(results() / "stress.json", odd);
     EXPECT_EQ(data({row("pcss", 0.5f)})["stability"], Json::parse(odd));
   }
+}
+
+TEST_F(BenchReport, StressTablesThatNestTooDeepAreRefused) {
+  constexpr std::size_t levels = 200'000;
+  writeTextFile(results() / "stress.json",
+                R"({"results": [{"case": )" + std::string(levels, '[') + std::string(levels, ']') + "}]}");
+  EXPECT_THROW(data({row("pcss", 0.5f)}), Error);
 }
 
 TEST_F(BenchReport, OnlyPicturesInsideTheFolderAreRead) {

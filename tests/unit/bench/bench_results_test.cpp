@@ -103,6 +103,16 @@ TEST_F(BenchResults, BrokenRowsAreRefused) {
   }
 }
 
+/// What is not known of a row is written as it was read, by a function that calls itself for each level.
+TEST_F(BenchResults, RowsThatNestTooDeepAreRefused) {
+  constexpr std::size_t levels = 200'000;
+  std::string line = toJson(exampleRow(exampleCase()));
+  const std::string stats = "\"stats\":{";
+  line.insert(line.find(stats) + stats.size(),
+              "\"more\":" + std::string(levels, '[') + std::string(levels, ']') + ",");
+  EXPECT_THROW(rowFromJson(line), Error);
+}
+
 TEST_F(BenchResults, ReadingLeavesATornFileAsItIs) {
   const Row first = exampleRow(exampleCase()), again = exampleRow(exampleCase(), 0.5);
   const std::string text = toJson(first) + "\n" + toJson(again) + "\n{";
