@@ -32,6 +32,9 @@ export function putChoosers(tools, choosers) {
   if (focused) [...tools.querySelectorAll("select, input")].find((field) => labelOf(field) === focused)?.focus();
 }
 
+/** Whether a key belongs to the browser: with Alt, an arrow goes back. */
+export const isShortcut = (event) => event.altKey || event.ctrlKey || event.metaKey;
+
 /** A name that may be broken after its underscores. */
 export function breakable(name) {
   return String(name).split(/(?<=_)/).flatMap((part, i) => (i ? [el("wbr"), part] : [part]));

@@ -1,5 +1,5 @@
 // Pictures over the whole window, which flip in place: differences show where two of them alternate.
-import {el} from "./dom.js";
+import {el, isShortcut} from "./dom.js";
 import {put} from "./pictures.js";
 
 /** Shows `pictures`, [{whole, name, text}], beginning with number `start`. Arrow keys and the space bar flip, Escape closes. */
@@ -18,7 +18,7 @@ export function enlarge(pictures, start) {
   const steps = {ArrowRight: () => (shown + 1) % count, ArrowLeft: () => (shown + count - 1) % count, " ": () => before};
   const dialog = el("dialog", {"aria-label": "Enlarged picture", close: () => dialog.remove(),
     keydown: (event) => {
-      if (!steps[event.key] || (event.key === " " && "close" in event.target.dataset)) return;
+      if (!steps[event.key] || isShortcut(event) || (event.key === " " && "close" in event.target.dataset)) return;
       event.preventDefault();
       show(steps[event.key]());
     }},

@@ -4,7 +4,7 @@ import {scaleLog} from "d3-scale";
 import {clientPoint, create, select} from "d3-selection";
 import {line as polyline} from "d3-shape";
 
-import {milliseconds} from "./dom.js";
+import {isShortcut, milliseconds} from "./dom.js";
 import {errorText, measured, paretoFront} from "./metrics.js";
 import {colour, dashes, marker} from "./marks.js";
 import {settingsText} from "./series.js";
@@ -175,7 +175,7 @@ export function drawPlot(container, {curves, rows, metric, time, level, traced, 
     if (point) onCurrent(point.row);
   });
   svg.node().addEventListener("keydown", (event) => {
-    const focused = pointOf(event);
+    const focused = !isShortcut(event) && pointOf(event);
     const next = focused && neighbour(points, focused, event.key);
     if (!next) return;
     event.preventDefault();

@@ -1,6 +1,6 @@
 // One subject (scene, camera, light, environment): its chart, its pictures and its tables. A table of the bench is
 // shown at a time, so that terms, sizes, modes and renderers never mix.
-import {breakable, chooser, el, putChoosers} from "./dom.js";
+import {breakable, chooser, el, number, putChoosers} from "./dom.js";
 import {METRICS, TIMES, isNumber, knownMetrics, tracedBy} from "./metrics.js";
 import {OUTDATED, SEPARATION_FLOOR, curveOf, curves as curvesOf} from "./series.js";
 import {commonTarget, equalRows, nearest} from "./equal.js";
@@ -29,12 +29,8 @@ export class Section {
   open() {
     if (this.table) return;
     this.choose(this.tables[0]);
-    let width = 0;  // charts are drawn for a width: anew when it changes
-    new ResizeObserver(([entry]) => {
-      if (entry.contentRect.width === width) return;
-      width = entry.contentRect.width;
-      this.drawCharts();
-    }).observe(this.body);
+    // Charts are drawn for a width; what stands beside them keeps the focus when it changes.
+    new ResizeObserver(() => { if (this.body.clientWidth !== this.width) this.drawCharts(); }).observe(this.body);
   }
 
   choose(table) {
@@ -73,7 +69,7 @@ export class Section {
     this.spectrum = el("div", {class: "chart"});
     const legend = el("ul", {class: "legend"}, curves.map((curve) => el("li", {}, swatch(curve), curve.name)));
     const noise = isNumber(table.reference.noise_rms)
-      ? `Noise of the reference: ${(100 * table.reference.noise_rms).toPrecision(2)} % of the mean. ` : "";
+      ? `Noise of the reference: ${number(100 * table.reference.noise_rms)} % of the mean. ` : "";
     const others = this.tables.filter((other) => other !== table && other.term === table.term && other.renderer === table.renderer &&
       other.machines.join() === table.machines.join() && other.drivers.join() === table.drivers.join() &&
       other.dynamic === table.dynamic);
@@ -94,6 +90,7 @@ export class Section {
       framesPerSecond([table, ...others]), ...(passTable(table) ?? []),
     ].filter(Boolean));
     this.drawCharts();
+    this.describe();
   }
 
   drawCharts() {
@@ -104,7 +101,9 @@ export class Section {
     this.plot = drawPlot(this.chart, {curves, rows: table.rows, metric, time, level: floor && metric.read(floor),
       traced: tracedBy(table, metric, time), onCurrent: (row) => { if (row !== this.current) this.select(row); }});
     if (this.budget) this.plot.budget(...this.budget);
-    this.select(this.current);
+    this.plot.mark(this.current);
+    this.drawSpectra();
+    this.width = this.body.clientWidth;
     if (focused) this.chart.querySelector(".current")?.focus();
   }
 
@@ -126,10 +125,21 @@ export class Section {
   select(row) {
     this.current = row;
     this.plot.mark(row);
+    this.drawSpectra();
+    this.describe();
+  }
+
+  /** Says what the current setting is, and marks it in the table. */
+  describe() {
+    const row = this.current;
     this.name.replaceChildren(...breakable(row.name), ...(row.outdated ? [OUTDATED] : []));
     this.facts.replaceChildren(...detail(this.table, row));
     for (const line of this.body.querySelectorAll("tr[data-key]")) line.classList.toggle("current", line.dataset.key === row.key);
-    const {curves, metric, time} = this;
+  }
+
+  /** The current setting's, and those of the others at equal time. */
+  drawSpectra() {
+    const {curves, metric, time, current: row} = this;
     const own = curveOf(curves, row);
     const target = time.read(row) ?? commonTarget(curves, metric, time, "ms");
     const others = target ? nearest(curves, metric, time, "ms", target).found.filter((point) => point.curve !== own) : [];

@@ -159,6 +159,29 @@ def reacts(browser):
     check("sampled_area_light" in browser.evaluate(HEADING), "the table's button shows nothing")
 
 
+def is_resized(browser):
+    """Charts are drawn once, and again for another width; what has the focus beside them keeps it. Shortcuts stay the browser's."""
+    counting = browser.call("Page.addScriptToEvaluateOnNewDocument", source="""window.drawn = 0; new MutationObserver(changes => {
+        for (const {addedNodes} of changes) window.drawn += [...addedNodes].filter(n => n.matches?.('svg.plot')).length;
+        }).observe(document, {childList: true, subtree: true})""")
+    browser.open(page)
+    browser.call("Page.removeScriptToEvaluateOnNewDocument", identifier=counting["identifier"])
+    check(browser.evaluate("window.drawn") == 1, "a chart is drawn more than once before anybody asks for it")
+    width = "document.querySelector('svg.plot').getAttribute('width')"
+    before = browser.evaluate(width)
+    browser.evaluate("document.querySelector('.detail button.framed').focus()")
+    browser.call("Emulation.setDeviceMetricsOverride", width=800, height=900, deviceScaleFactor=1, mobile=False)
+    browser.settle()
+    check(browser.evaluate(width) != before, "the chart keeps the width of another window")
+    check(browser.evaluate("document.activeElement.matches('.detail button.framed')"), "another width takes the focus away")
+    for what in ("document.querySelector('g.point[tabindex=\"0\"]').focus()", "document.querySelector('.detail button.framed').click()"):
+        browser.evaluate(what)
+        browser.settle()
+        for key in ("ArrowLeft", "ArrowRight"):
+            check(browser.evaluate(f"""document.activeElement.dispatchEvent(new KeyboardEvent('keydown',
+                {{key: '{key}', altKey: true, bubbles: true, cancelable: true}}))"""), f"{key} with Alt is taken from the browser")
+
+
 def slide(browser, where, position):
     browser.evaluate(f"""(s => {{ s.value = {position}; s.dispatchEvent(new Event('input')); }})(
         document.querySelector('{where} input[type=range]'))""")
@@ -445,6 +468,7 @@ def tells_references_apart(browser):
     others = [json.loads(json.dumps(row)) for row in rows]
     for row in others:
         row.update(key=row["key"] + "r", quality={**row["quality"], "spp": 64})
+        row["reference"]["noise_rms"] = 2.1
         row["stats"]["frame_ms"] = {key: value if key == "n" else 10 * value for key, value in row["stats"]["frame_ms"].items()}
     with reported([*rows, *others]):
         browser.open(page)
@@ -459,6 +483,8 @@ def tells_references_apart(browser):
         first = browser.evaluate(speeds)
         browser.evaluate(f"(s => {{ s.value = '1'; s.dispatchEvent(new Event('change')); }})({choice})")
         check(browser.evaluate(speeds) != first, "the times of the other reference's table")
+        check("Noise of the reference: 210 % of the mean." in browser.evaluate("document.getElementById('results').textContent"),
+              "the noise of the other reference")
 
 
 def tells_lights_of_the_environment_apart(browser):
@@ -641,7 +667,7 @@ def is_shut_by_its_policy(browser):
 
 bench()
 with Browser(options.chromium) as browser:
-    for step in (shows_points_and_pictures, reacts, answers_for_a_budget, enlarges_and_flips, loads_pictures_on_demand,
+    for step in (shows_points_and_pictures, reacts, is_resized, answers_for_a_budget, enlarges_and_flips, loads_pictures_on_demand,
                  tells_close_points_apart, is_painted, is_accessible, sets_the_reference_beside,
                  keeps_machines_and_programs_apart, tells_references_apart, tells_lights_of_the_environment_apart,
                  draws_defaults_in_their_place, shows_hostile_names_literally, is_shut_by_its_policy, withstands_foreign_rows):
