@@ -15,12 +15,16 @@ def said(program, *arguments):
 
 
 def page(program, command, description):
+    called = " ".join([program.name, *command])
     name = "-".join([program.name, *command])
     # help2man hands its last argument to a shell, to which a folder's name may mean something else.
     text = subprocess.run([help2man, "--no-info", f"--name={description[0].lower()}{description[1:]}",
-                           f"--version-string={version}", "--include=/dev/stdin", " ".join([f"./{program.name}", *command])],
+                           f"--version-string={version}", "--include=/dev/stdin", f"./{called}"],
                           check=True, capture_output=True, text=True, cwd=program.parent,
                           input=f"[see also]\n{', '.join(f'{other}(1)' for other in pages if other != name)}\n").stdout
+    # It takes the words of the call for the page's name; that has no space, or whatis and apropos read none.
+    text = re.sub(r'^\.TH .*? "1"', f'.TH {name.upper()} "1"', text, count=1, flags=re.MULTILINE)
+    text = text.replace(f"\n{called} \\- ", f"\n{name} \\- ", 1)
     (folder / f"{name}.1").write_text(text)
 
 

@@ -92,6 +92,8 @@ std::string bashCompletion(const CLI::App& program) {
       R"(# Completes the command line of {0} in bash, and in zsh with bashcompinit, from its own tables.
 {1}() {{
   local word=${{COMP_WORDS[COMP_CWORD]}} before=${{COMP_WORDS[COMP_CWORD-1]}} words='' values='' line
+  # Of --option=value bash makes three words.
+  if [ "$word" = '=' ]; then word=''; elif [ "$before" = '=' ]; then before=${{COMP_WORDS[COMP_CWORD-2]}}; fi
   COMPREPLY=()
   {2}
   while IFS= read -r line; do COMPREPLY+=("$line"); done < <(

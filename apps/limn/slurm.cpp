@@ -22,6 +22,7 @@ namespace fs = std::filesystem;
 namespace {
 
 constexpr int kPartsPerNode = 4;  // so that nodes that are done early have more to do
+constexpr int kMostTasks = 1000;  // of an array, where a cluster has not been set up for more (MaxArraySize)
 
 /// What a program of Slurm prints.
 std::string output(const std::string& program, const std::vector<std::string>& arguments) {
@@ -141,7 +142,8 @@ std::string submitSuite(const fs::path& suiteFile, const fs::path& folder, const
 
   std::set<std::string> questions;
   for (const bench::Case& c : cases) questions.insert(bench::question(c));
-  const int parts = std::min(static_cast<int>(questions.size()), kPartsPerNode * job.nodes);
+  const int parts = std::min(
+      {static_cast<int>(questions.size()), kPartsPerNode * job.nodes, std::max(kMostTasks, job.nodes)});
   const std::vector<bench::Case> missing = bench::unfinishedCases(cases, results.rows(), provenance);
   if (missing.empty()) {
     results.writeReport();

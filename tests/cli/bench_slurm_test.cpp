@@ -165,6 +165,20 @@ TEST_F(BenchSlurm, TasksHaveANodeForThemselvesAndAreQueuedAgainWhereItIsLost) {
     EXPECT_THAT(array, HasSubstr("\n" + std::string(word) + "\n"));
 }
 
+/// As Slurm is set up by default, it refuses an array with a task of number 1001.
+TEST_F(BenchSlurm, ArraysAreNoLargerThanSlurmTakes) {
+  slurmThatWaits();
+  std::ofstream file(folder_ / "suite.toml");
+  file << "name = 'parts'\nterm = 'visibility'\nsizes = [";
+  for (int width = 1; width <= 1001; ++width) file << "'" << width << "x16', ";
+  file << "]\n[[scenes]]\nscene = 'cornell_box'\nlights = '#0'\n"
+          "[[techniques]]\ntechnique = 'hard_shadow_map'\n";
+  file.close();
+  const Outcome outcome = submitted({"--nodes", "300"});
+  EXPECT_THAT(outcome.out, HasSubstr("measures them in 1000 parts on 300 nodes")) << outcome.err;
+  EXPECT_THAT(contents(folder_ / "bin/sbatch.words"), HasSubstr(",1000%300\n"));
+}
+
 /// Names of output are patterns.
 TEST_F(BenchSlurm, FoldersMayHaveAPercentSignInTheirNames) {
   slurmThatWaits();

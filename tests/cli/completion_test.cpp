@@ -32,6 +32,8 @@ TEST(Completion, KnowsCommandsOptionsAndChoices) {
   EXPECT_THAT(completed({"limn", "render", "--tonemap", ""}), ElementsAre("none", "neutral", "agx"));
   EXPECT_THAT(completed({"limn", "reference", "x.glb", "--term", "ind"}), ElementsAre("indirect"));
   EXPECT_THAT(completed({"limn", "bench", "quick", "--backend", ""}), ElementsAre("egl", "osmesa", "glfw"));
+  EXPECT_THAT(completed({"limn", "bench", "quick", "--backend", "="}), ElementsAre("egl", "osmesa", "glfw"));
+  EXPECT_THAT(completed({"limn", "bench", "quick", "--backend", "=", "o"}), ElementsAre("osmesa"));
   EXPECT_THAT(completed({"limn", "brdf", "fit", "metal:0.3", "--fit", "pq"}), ElementsAre("pqp", "pqp_disc"));
   EXPECT_THAT(completed({"limn", "brdf", "fit", "metal:0.3", "--format", "fl"}), ElementsAre("float32"));
   EXPECT_THAT(completed({"limn", "compare", "--tone"}), testing::IsEmpty());

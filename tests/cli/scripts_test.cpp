@@ -123,7 +123,8 @@ esac
   ASSERT_EQ(outcome.status, 0) << outcome.err;
   EXPECT_EQ(listing(folder_ / "pages"), (std::vector<std::string>{"limn-render.1", "limn.1"}));
   const std::string page = contents(folder_ / "pages/limn-render.1");
-  EXPECT_THAT(page, testing::HasSubstr("\nlimn render \\- render things\n"));
+  EXPECT_THAT(page, testing::HasSubstr("\n.TH LIMN-RENDER \"1\" "));
+  EXPECT_THAT(page, testing::HasSubstr("\nlimn-render \\- render things\n")) << "a name that whatis reads";
   EXPECT_THAT(page, testing::Not(testing::HasSubstr("folder")));
 }
 
