@@ -25,28 +25,31 @@ constexpr const char* kProperties =
                                setting, why, kProperties));
 }
 
-/// As many numbers as `values` has, at least `least`; a single one stands for all where least is 1.
+/// N numbers with commas between them; where `alike`, a single one stands for all.
 template <int N, class T = float>
-glm::vec<N, T> numbers(const std::string& setting, std::string_view text, int least = N) {
+glm::vec<N, T> numbers(const std::string& setting, std::string_view text, bool alike = false) {
+  const std::string wanted = N == 1 ? "one number is wanted" : fmt::format("{} numbers are wanted", N);
   glm::vec<N, T> values(0);
   int count = 0;
-  for (; count < N && !text.empty(); ++count) {
+  for (bool more = true; more;) {
+    if (count == N) refuse(setting, wanted);
     const size_t comma = text.find(',');
     const auto number = parseNumber(text.substr(0, comma));
     if (!number || !(std::abs(*number) <= 1e9)) refuse(setting, "a number is wrong");
-    values[count] = static_cast<T>(*number);
-    text = comma == std::string_view::npos ? std::string_view() : text.substr(comma + 1);
+    values[count++] = static_cast<T>(*number);
+    more = comma != std::string_view::npos;
+    if (more) text.remove_prefix(comma + 1);
   }
-  if (!text.empty() || count < least) refuse(setting, fmt::format("{} numbers are wanted", N));
-  for (int i = count; i < N; ++i) values[i] = values[0];
+  if (count == 1 && alike) return glm::vec<N, T>(values[0]);
+  if (count < N) refuse(setting, wanted);
   return values;
 }
 
 void add(LightEdit& edit, const std::string& setting, std::string_view property, std::string_view value) {
   if (property == "position") edit.position = numbers<3, double>(setting, value);
   if (property == "rotation") edit.rotation = numbers<3>(setting, value);
-  if (property == "size") edit.size = numbers<2>(setting, value, 1);
-  if (property == "colour") edit.colour = numbers<3>(setting, value, 1);
+  if (property == "size") edit.size = numbers<2>(setting, value, true);
+  if (property == "colour") edit.colour = numbers<3>(setting, value, true);
   if (property == "intensity") edit.intensity = numbers<1>(setting, value).x;
   // Of smaller ones the area, by which intensities are divided, is 0 or makes light infinite.
   constexpr float kLeastSize = 1e-9f;
@@ -57,9 +60,12 @@ void add(LightEdit& edit, const std::string& setting, std::string_view property,
   if (edit.intensity && *edit.intensity < 0) refuse(setting, "intensities are not negative");
 }
 
-/// Node of a punctual light of the pose; none for meshes and the environment's. Pose::lights has those of
-/// nodes first.
-int nodeOf(const scene::Scene& scene, int light) {
+/// Node of a punctual light of the pose; none for meshes and the environment's, for which no node is looked
+/// at: there may be hundreds, described with every picture of a window. Pose::lights has those of nodes
+/// first.
+int nodeOf(const scene::Scene& scene, const scene::Pose& pose, int light) {
+  constexpr uint32_t kOfNoNode = glsl::light_flag_geometry | glsl::light_flag_environment;
+  if ((pose.lights[static_cast<size_t>(light)].flags & kOfNoNode) != 0) return scene::kNone;
   for (size_t n = 0; n < scene.nodes.size(); ++n)
     if (scene.nodes[n].light != scene::kNone && light-- == 0) return static_cast<int>(n);
   return scene::kNone;
@@ -150,7 +156,7 @@ std::vector<std::string> printed(const LightEdits& edits) {
 void applyLightEdits(scene::Scene& scene, const scene::Pose& pose, const LightEdits& edits) {
   for (const auto& [name, edit] : edits) {
     const int light = findNamed("light", name, pose.lightNames);
-    if (const int node = nodeOf(scene, light); node != scene::kNone)
+    if (const int node = nodeOf(scene, pose, light); node != scene::kNone)
       apply(scene, pose, light, name, edit, node);
     else if (const auto mesh = meshLightOf(scene, pose, light))
       applyToMesh(scene, pose, light, *mesh, edit);
@@ -181,12 +187,12 @@ bool isEditable(const scene::Scene& scene, const scene::Pose& pose, int index) {
   const auto first = std::ranges::find(pose.lightNames, pose.lightNames[static_cast<size_t>(index)]);
   if (first - pose.lightNames.begin() != index) return false;
   if (withoutArea(pose.lights[static_cast<size_t>(index)])) return false;
-  return nodeOf(scene, index) != scene::kNone || meshLightOf(scene, pose, index);
+  return nodeOf(scene, pose, index) != scene::kNone || meshLightOf(scene, pose, index);
 }
 
 LightEdit describeLight(const scene::Scene& scene, const scene::Pose& pose, int index) {
   LightEdit now;
-  const int node = nodeOf(scene, index);
+  const int node = nodeOf(scene, pose, index);
   if (node == scene::kNone) {
     const auto mesh = meshLightOf(scene, pose, index);
     return mesh ? describeMesh(scene, pose.lights[static_cast<size_t>(index)], *mesh) : now;

@@ -199,11 +199,15 @@ void relight(View& view, const SceneQuestion& question) {
   // Where nothing changes, a reference may go on reading it.
   if (scene.environment.rotation != rotation) scene.environment.rotation = rotation;
   if (scene.environment.scale != scale) scene.environment.scale = scale;
-  if (question.lightSize > 0) resizeLights(scene, question.lightSize);
+  const auto resize = [&] {
+    if (question.lightSize > 0) resizeLights(scene, question.lightSize);
+  };
+  if (!view.defaultLights) resize();
   scene::evaluate(scene, view.time, view.animation, view.pose);
   view.camera = chooseCamera(question, view.pose, view.framing);
   if (view.defaultLights) {
     scene::addDefaultLights(scene, view.camera, view.pose.bounds);
+    resize();  // the key light as well
     scene::evaluate(scene, view.time, view.animation, view.pose);
   }
   if (question.lightSettings.empty()) return;

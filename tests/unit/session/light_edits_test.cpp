@@ -244,6 +244,11 @@ TEST(LightEdits, RefusalsSayWhatIsAccepted) {
   EXPECT_THAT(refusal({"left"}), testing::AllOf(HasSubstr("'left'"), HasSubstr("position=x,y,z")));
   EXPECT_THAT(refusal({"left.position=1,2"}), HasSubstr("3 numbers"));
   EXPECT_THAT(refusal({"left.position=1,2,x"}), HasSubstr("a number is wrong"));
+  EXPECT_THAT(refusal({"left.position=1,2,3,"}), HasSubstr("3 numbers"));
+  EXPECT_THAT(refusal({"left.colour=1,2"}), HasSubstr("3 numbers")) << "one stands for all, two do not";
+  EXPECT_THAT(refusal({"left.size=1,"}), HasSubstr("a number is wrong"));
+  EXPECT_THAT(refusal({"left.size=1,2,3"}), HasSubstr("2 numbers"));
+  EXPECT_THAT(refusal({"left.intensity=1,"}), HasSubstr("one number"));
   EXPECT_THAT(refusal({"left.size=0"}), HasSubstr("above 0"));
   EXPECT_THAT(refusal({"left.size=1,1e-25"}), HasSubstr("at least 1e-9"));
   EXPECT_THAT(refusal({"left.intensity=-1"}), HasSubstr("not negative"));

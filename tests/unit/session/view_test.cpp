@@ -252,6 +252,22 @@ TEST(DefaultLights, LeaveScenesAsTheyAreLitUnlessAskedFor) {
   EXPECT_FALSE(open(underSky).defaultLights);
 }
 
+/// The key light is a directional one like those of files.
+TEST(DefaultLights, AreResizedAsOtherLights) {
+  SceneQuestion question = unlit();
+  question.lightSize = 0.3;
+  EXPECT_EQ(open(question).pose.lights.at(0).angular_diameter, 0.3f);
+  question.scene = "lights";
+  question.defaultLights = "on";
+  const View both = open(question);
+  for (size_t i = 0; i < both.pose.lights.size(); ++i) {
+    const glsl::Light& light = both.pose.lights[i];
+    if (light.type == glsl::light_directional) {
+      EXPECT_EQ(light.angular_diameter, 0.3f) << both.pose.lightNames[i];
+    }
+  }
+}
+
 /// The lights move with the camera; what metals mirror is turned and scaled as any environment, and not by
 /// the camera.
 TEST(DefaultLights, EnvironmentTurnsByItsOptionsAlone) {
