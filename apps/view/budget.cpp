@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <filesystem>
 #include <map>
+#include <tuple>
 #include <utility>
 
 #include "core/base/shell.h"
@@ -33,14 +34,18 @@ std::string measuredText(bench::Case c) {
 }  // namespace
 
 bool sameScene(const std::string& a, const std::string& b) {
-  return sceneName(a) == sceneName(b);
+  namespace fs = std::filesystem;
+  if (sceneName(a) != sceneName(b)) return false;
+  std::error_code unknown;
+  const bool files = fs::is_regular_file(a, unknown) && fs::is_regular_file(b, unknown);
+  return !files || fs::equivalent(a, b, unknown);
 }
 
 std::string MeasuredSetting::text() const {
   std::string line = technique.empty() ? "unshadowed" : technique;
   for (const auto& [name, value] : parameters)
     line += fmt::format("  {}={}", shortParameter(technique, name), value);
-  return line;
+  return outdated ? line + "  (by another version)" : line;
 }
 
 std::vector<MeasuredQuestion> measuredQuestions(std::span<const bench::Row> rows, const std::string& scene) {
@@ -62,8 +67,8 @@ std::vector<MeasuredQuestion> measuredQuestions(std::span<const bench::Row> rows
                            .pixels = std::int64_t{first.what.width} * first.what.height,
                            .settings = {}});
       for (const bench::Row& row : table.rows)
-        question.settings.push_back(
-            {row.what.technique, row.what.parameters, row.error, row.cost.frameMs.median});
+        question.settings.push_back({row.what.technique, row.what.parameters, row.error,
+                                     row.cost.frameMs.median, bench::isOutdated(row, table)});
     }
   std::ranges::stable_sort(questions, [](const MeasuredQuestion& a, const MeasuredQuestion& b) {
     return std::pair(a.pixels, a.settings.size()) > std::pair(b.pixels, b.settings.size());
@@ -79,7 +84,7 @@ BudgetAnswer bestWithin(const MeasuredQuestion& question, double ms, const Metri
   for (const MeasuredSetting& setting : question.settings)
     if (setting.ms <= ms) quick.push_back(&setting);
   std::ranges::stable_sort(quick, [&](const MeasuredSetting* a, const MeasuredSetting* b) {
-    return std::pair(badness(*a), a->ms) < std::pair(badness(*b), b->ms);
+    return std::tuple(a->outdated, badness(*a), a->ms) < std::tuple(b->outdated, badness(*b), b->ms);
   });
   if (quick.empty()) return {};
   BudgetAnswer answer{*quick.front(), {}};

@@ -21,8 +21,9 @@ struct MeasuredSetting {
   std::vector<std::pair<std::string, std::string>> parameters;  ///< "technique.parameter", value
   Metrics error;
   double ms = 0;
+  bool outdated = false;  ///< measured with another version than the newest row of its table
 
-  /// Returns technique and parameters on one line.
+  /// Returns technique and parameters on one line, and whether they are outdated.
   std::string text() const;
 };
 
@@ -36,7 +37,8 @@ struct MeasuredQuestion {
   std::vector<MeasuredSetting> settings;
 };
 
-/// Says whether both name the same scene: by its name or by that of its file.
+/// Says whether both name the same scene: by its name or by that of its file. Two files that exist are two
+/// scenes even where they have one name: many a model is a scene.gltf.
 bool sameScene(const std::string& a, const std::string& b);
 
 /// Returns what the rows hold of `scene`: the largest pictures first, then the questions with the most
@@ -51,7 +53,7 @@ struct BudgetAnswer {
 };
 
 /// Returns the settings that are best by `metric`, which is no basis, among those whose frames take no longer
-/// than `ms`.
+/// than `ms`. Outdated ones come after all others.
 BudgetAnswer bestWithin(const MeasuredQuestion& question, double ms, const MetricInfo& metric);
 
 /// Declares a search of limn tune.

@@ -47,6 +47,12 @@ std::optional<glm::vec3> onPlane(const ScreenCamera& screen, glm::vec2 mouse, co
   return eye + t * direction;
 }
 
+/// To four digits of the scene's size.
+glm::vec3 rounded(const glm::vec3& position, float radius) {
+  const float perMetre = std::pow(10.f, 3 - std::floor(std::log10(std::max(radius, 1e-6f))));
+  return glm::round(position * perMetre) / perMetre;
+}
+
 /// Parameter of the point on the axis through `point` that is nearest to the mouse's ray.
 std::optional<float> onAxis(const ScreenCamera& screen, glm::vec2 mouse, const glm::vec3& point,
                             const glm::vec3& axis) {
@@ -158,6 +164,16 @@ GizmoPose dragged(const ScreenCamera& screen, const GizmoDrag& drag, const glm::
   };
   pose.rotation = glm::mat3(glm::rotate(glm::mat4(1), angle(*to) - angle(*from), axis)) * drag.start.rotation;
   return pose;
+}
+
+session::LightEdit placedBy(const GizmoHandle& handle, const GizmoPose& pose, const session::LightEdit& now,
+                            session::LightEdit edit, const glm::dvec3& origin, float radius) {
+  const bool turned = handle.kind == GizmoHandle::Kind::ring;
+  if (now.position && !turned) edit.position = origin + glm::dvec3(rounded(pose.position, radius));
+  if (now.rotation && turned) edit.rotation = glm::round(session::anglesOf(pose.rotation) * 10.f) / 10.f;
+  if (!edit.position) edit.position = now.position;
+  if (!edit.rotation) edit.rotation = now.rotation;
+  return edit;
 }
 
 }  // namespace limn::app

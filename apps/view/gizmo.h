@@ -8,6 +8,7 @@
 #include <vector>
 
 #include "core/scene/camera.h"
+#include "core/session/light_edits.h"
 
 namespace limn::app {
 
@@ -59,5 +60,12 @@ struct GizmoDrag {
 /// Returns the pose of the object when the mouse is at `mouse`; the pose at the start where that is undefined
 /// (the plane or axis is seen edge-on).
 GizmoPose dragged(const ScreenCamera& screen, const GizmoDrag& drag, const glm::vec2& mouse);
+
+/// Returns the edit of a light that a handle has brought to `pose`, in a scene of that origin and radius.
+/// What the handle changes gets the digits that a hand can aim at. The rest of its place is set as well, so
+/// that animations leave the light there: as `edit` has it, else to the last digit as it is `now`. What `now`
+/// lacks is left alone: lights without a place or a direction.
+session::LightEdit placedBy(const GizmoHandle& handle, const GizmoPose& pose, const session::LightEdit& now,
+                            session::LightEdit edit, const glm::dvec3& origin, float radius);
 
 }  // namespace limn::app

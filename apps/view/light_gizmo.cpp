@@ -1,9 +1,6 @@
 // Lights in the picture: marks to choose one by, and the chosen one's handles.
 #include <imgui.h>
 
-#include <algorithm>
-#include <cmath>
-
 #include "apps/view/viewer_style.h"
 #include "apps/view/viewer_window.h"
 
@@ -21,12 +18,6 @@ bool isDirectional(const LightFacts& light) {
 /// Where a light's handles are: directional ones have no place, theirs is the scene's middle.
 glm::vec3 placeOf(const LightFacts& light, const SceneFacts& scene) {
   return isDirectional(light) ? scene.bounds.centre() : light.light.position;
-}
-
-/// To four digits of the scene's size: what a hand can aim at.
-glm::vec3 rounded(const glm::vec3& position, float radius) {
-  const float perMetre = std::pow(10.f, 3 - std::floor(std::log10(std::max(radius, 1e-6f))));
-  return glm::round(position * perMetre) / perMetre;
 }
 
 void drawOutline(const ScreenCamera& screen, const glm::vec3& centre, const GizmoHandle& handle, bool held) {
@@ -120,14 +111,12 @@ bool ViewerWindow::dragLight() {
     const LightFacts& light = facts_->lights[static_cast<size_t>(chosenLight_)];
     const GizmoPose pose = dragged(camera, *drag_, mouse);
     const auto found = lightEdits_.find(light.name);
-    session::LightEdit edit = found == lightEdits_.end() ? session::LightEdit{} : found->second;
-    if (!isDirectional(light))
-      edit.position =
-          facts_->scene->origin + glm::dvec3(rounded(pose.position, facts_->scene->bounds.radius()));
-    const glm::vec3 angles = glm::round(session::anglesOf(pose.rotation) * 10.f) / 10.f;
-    const bool turned = drag_->handle.kind == GizmoHandle::Kind::ring;
-    if (light.light.type != glsl::light_point && (turned || !edit.rotation)) edit.rotation = angles;
-    if (io.MouseDelta.x != 0 || io.MouseDelta.y != 0) editLight(light, edit);
+    session::LightEdit now = light.now;
+    if (light.light.type == glsl::light_point) now.rotation.reset();  // it shines the same in all directions
+    if (io.MouseDelta.x != 0 || io.MouseDelta.y != 0)
+      editLight(light, placedBy(drag_->handle, pose, now,
+                                found == lightEdits_.end() ? session::LightEdit{} : found->second,
+                                facts_->scene->origin, facts_->scene->bounds.radius()));
     if (!io.MouseDown[0]) drag_.reset();  // the last movement may come with the release
     return true;
   }

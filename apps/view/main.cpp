@@ -17,6 +17,7 @@ void checkFiles(const ViewerOptions& options, bool saved) {
   checkExtension("--save", options.save, {".exr", ".png"});
   if (!options.screenshot.empty()) checkExtension("--screenshot", options.screenshot, {".png"});
   std::filesystem::path save = saved ? options.save : std::filesystem::path();
+  checkApart({save, options.screenshot, options.stats}, {options.scene.scene, options.scene.environment});
   std::error_code ignored;
   while (save.has_parent_path() && !std::filesystem::exists(save.parent_path(), ignored))
     save = save.parent_path();

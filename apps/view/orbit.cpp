@@ -8,13 +8,16 @@ namespace limn::app {
 namespace {
 
 constexpr float kSteepest = 1.5f;  // radians: straight up has no upright picture
+/// Of the scene's radius. A hand moves the camera by parts of the distance: one that looks away from the
+/// middle of the room that it stands in would hardly move.
+constexpr float kNearest = 0.1f;
 
 }  // namespace
 
 Orbit::Orbit(const scene::CameraPose& camera, const scene::Bounds& bounds) : near_(camera.near) {
   const glm::mat4 toWorld = glm::inverse(camera.worldToView);
   const glm::vec3 from(toWorld[3]), forward = -glm::vec3(toWorld[2]);
-  distance_ = std::max(glm::dot(bounds.centre() - from, forward), 2 * near_);
+  distance_ = std::max({glm::dot(bounds.centre() - from, forward), kNearest * bounds.radius(), 2 * near_});
   target_ = from + distance_ * forward;
   azimuth_ = std::atan2(-forward.x, -forward.z);
   elevation_ = std::clamp(std::asin(std::clamp(-forward.y, -1.f, 1.f)), -kSteepest, kSteepest);

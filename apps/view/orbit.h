@@ -11,7 +11,8 @@ namespace limn::app {
 class Orbit {
  public:
   Orbit() = default;
-  /// Makes the orbit look where `camera` does; the point lies at the depth of the middle of `bounds`.
+  /// Makes the orbit look where `camera` does; the point lies at the depth of the middle of `bounds`, but no
+  /// nearer than a tenth of their radius.
   Orbit(const scene::CameraPose& camera, const scene::Bounds& bounds);
 
   /// Turns the camera around the point, radians.

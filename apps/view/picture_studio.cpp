@@ -10,6 +10,7 @@
 #include "apps/limn/options.h"
 #include "apps/view/display_image.h"
 #include "core/base/error.h"
+#include "core/base/failure.h"
 #include "core/question/question_fields.h"
 
 namespace limn::app {
@@ -34,9 +35,14 @@ render::Settings settingsOf(const PictureOrder& order, int reduction, int light)
   return settings;
 }
 
-/// Whether relight() may write to materials.
+/// Whether relight() may write to materials. It may where the pose lacks a light: a mesh may be none at the
+/// time that was shown last, and one at the next.
 bool changesMeshes(const session::View& view, const SceneQuestion& question) {
-  return session::changeMeshes(view.pose, session::parseLightEdits(question.lightSettings));
+  try {
+    return session::changeMeshes(view.pose, session::parseLightEdits(question.lightSettings));
+  } catch (const UsageError&) {
+    return true;
+  }
 }
 
 std::shared_ptr<const SceneFacts> factsOf(const session::View& view, const SceneQuestion& question,
@@ -131,9 +137,9 @@ void PictureStudio::open(const OpenOrder& order) {
     facts_.shaderProblem.clear();
     if (whole) say("opened " + wanted.scene);  // else the reason why something was left out stays
     refused_ = whole ? std::nullopt : std::optional(order.scene);
-  } catch (const std::exception& error) {
+  } catch (const std::exception&) {
     if (order.needed) facts_.fatal = std::current_exception();
-    say(error.what(), true);
+    say(currentFailure(), true);
     refused_ = order.scene;
   }
   ++facts_.opened;
@@ -168,18 +174,18 @@ void PictureStudio::place(const PictureOrder& order) {
     reference_.stop();
     truthKey_.clear();  // what is asked may be the same: it is asked again
   }
+  placed_.reset();  // where a light is refused the others may be set in part: the next order sets all again
   if (!relit) {
     session::moveTo(*view_, s, s.time);
   } else {
-    placed_.reset();  // should relight() fail
     view_->time = s.time;
     session::relight(*view_, s);
-    placed_ = s;
     if (turned) {
       picture_->forget();
       if (other_) other_->forget();
     }
   }
+  placed_ = s;
   view_->aa = s.aa;
   view_->light =
       s.light.empty() ? scene::kNone : session::findNamed("light", s.light, view_->pose.lightNames);

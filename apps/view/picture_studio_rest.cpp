@@ -128,22 +128,29 @@ bool PictureStudio::meter(const PictureOrder& order) {
 
 /// Shows a picture at rest with all its samples in each pixel and all frames over which techniques average.
 /// Where `outdated` says that something else is wanted it is given up, and there is no rendered picture any
-/// more.
+/// more; where a frame fails, the facts say why.
 bool PictureStudio::smooth(const PictureOrder& order, const std::function<bool()>& outdated) {
   if (order.moving || smooth_ || !facts_.picture.problem.empty() || !facts_.other.problem.empty())
     return false;
   const int aa = order.scene.aa;
   const bool beside = order.beside == Beside::techniques;
   if (!picture_->takesMoreFrames(aa) && !(beside && other_->takesMoreFrames(aa))) return false;
+  bool failed = false;
   const auto read = [&](ShownPicture& picture, std::optional<Image>& image, Shot& shot) {
-    image = picture.read(view_->camera, aa, outdated);
+    try {
+      image = picture.read(view_->camera, aa, outdated);
+    } catch (const Error& error) {
+      failed = true;
+      shot.problem = error.what();
+      picture.forget();  // its renderer may have half of a frame
+    }
     if (!image) return false;
     shot.image = std::make_shared<const Image8>(toneMapped(*image, order.tone));
     return true;
   };
   if (!read(*picture_, smooth_, facts_.picture) || (beside && !read(*other_, smoothOther_, facts_.other))) {
-    rendered_.reset();
-    return false;
+    if (!failed) rendered_.reset();
+    return failed;
   }
   compared_ = false;
   return true;
@@ -212,8 +219,8 @@ void PictureStudio::save(const SaveOrder& order) {
   try {
     write(order, order.file);
     finishSaving("wrote " + order.file.string());
-  } catch (const std::exception& error) {
-    finishSaving(error.what(), true);
+  } catch (const std::exception&) {
+    finishSaving(currentFailure(), true);
   }
 }
 
@@ -248,6 +255,7 @@ Image PictureStudio::renderNext(const PictureOrder& order) {
 void PictureStudio::write(const SaveOrder& order, const std::filesystem::path& file, bool follows) {
   const PictureOrder picture = exposed(order.picture);
   if (picture.of != facts_.scene) throw Error("not saved: another scene was opened meanwhile");
+  checkApart({file}, {picture.scene.scene, picture.scene.environment});
   Image image = follows ? renderNext(picture) : renderWhole(picture);
   sign(image, order.command);
   if (file.has_parent_path()) createFolder(file.parent_path());
@@ -263,8 +271,8 @@ void PictureStudio::saveNext() {
   try {
     sequence_->order.picture.scene.time = frame / sequence_->order.fps;
     write(sequence_->order, numbered(sequence_->order.file, frame), frame > range.first);
-  } catch (const std::exception& error) {
-    finishSaving(fmt::format("frame {}: {}", frame, error.what()), true);
+  } catch (const std::exception&) {
+    finishSaving(fmt::format("frame {}: {}", frame, currentFailure()), true);
     return;
   }
   const int done = frame - range.first + 1, all = range.last - range.first + 1;

@@ -4,6 +4,7 @@
 #include <chrono>
 
 #include "core/base/error.h"
+#include "core/base/failure.h"
 
 namespace limn::app {
 namespace {
@@ -21,8 +22,8 @@ void ReferenceWorker::start(Task task) {
   thread_ = std::jthread([this, task = std::move(task)](const std::stop_token& stop) {
     try {
       work(stop, task);
-    } catch (const std::exception& error) {
-      change(stop, [&] { state_.problem = error.what(); });
+    } catch (const std::exception&) {
+      change(stop, [&, why = currentFailure()] { state_.problem = why; });
     }
     change(stop, [&] { state_.running = false; });
     busy_ = false;

@@ -46,14 +46,12 @@ class ShownPicture {
                             const std::function<bool()>& cancelled = {});
   /// Renders and returns the picture of a sequence that follows the one of read() or next() before.
   Image next(const scene::CameraPose& camera, double time, int animation, int aa);
-  glm::ivec2 size() const { return settings_.size; }
   const std::string& problem() const { return problem_; }
   const std::string& shaderProblem() const { return shaderProblem_; }
   double frameMs() const { return frameMs_; }
   const std::vector<frame::PassReport>& passes() const { return passes_; }
   const std::vector<frame::PassTime>& times() const { return times_; }
   render::Renderer& renderer() { return renderer_; }
-  const render::Renderer& renderer() const { return renderer_; }
 
  private:
   gpu::Device& device_;

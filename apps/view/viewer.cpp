@@ -195,7 +195,9 @@ void ViewerWindow::adopt(const SceneFacts& scene, const SceneFacts* before) {
     orbit_.recount(before->origin, scene.origin);
     history_.recount(before->origin, scene.origin);
   }
-  if (sameViewpoint(state_.scene, scene.options)) orbit_ = Orbit(scene.camera, scene.bounds);
+  // A camera that the hand has moved goes on turning around the same point.
+  if (sameViewpoint(state_.scene, scene.options) && (another || state_.scene.eye.empty()))
+    orbit_ = Orbit(scene.camera, scene.bounds);
   lightEdits_ = session::parseLightEdits(state_.scene.lightSettings);
   chosenLight_ = scene::kNone;
   measured_.clear();

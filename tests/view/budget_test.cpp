@@ -3,10 +3,13 @@
 
 #include <gmock/gmock.h>
 
+#include <filesystem>
+#include <fstream>
 #include <set>
 
 #include "core/base/error.h"
 #include "core/session/technique_choice.h"
+#include "tests/cli/process.h"
 
 namespace limn::app {
 namespace {
@@ -52,6 +55,20 @@ TEST(Budget, NothingRanksBelowTheNoise) {
   EXPECT_EQ(answer.runnerUp->technique, "pcss");
 }
 
+/// As on the report page: they are taken where the newest version measured nothing that is quick enough.
+TEST(Budget, OutdatedSettingsComeLast) {
+  std::vector<bench::Row> rows{row("pcss", 0.01, 0.5), row("vssm", 0.02, 9), row("pcf", 0.03, 1)};
+  for (std::size_t i = 0; i < rows.size(); ++i) {
+    rows[i].provenance.program = i == 0 ? "before" : "now";
+    rows[i].line = i + 1;
+  }
+  const MeasuredQuestion question = measuredQuestions(rows, "balls").front();
+  const BudgetAnswer answer = bestWithin(question, 10, kRmse);
+  EXPECT_EQ(answer.best->text(), "vssm");
+  EXPECT_EQ(answer.runnerUp->text(), "pcf");
+  EXPECT_EQ(bestWithin(question, 0.9, kRmse).best->text(), "pcss  (by another version)");
+}
+
 /// A PSNR is the better the larger it is.
 TEST(Budget, WhatIsBestDependsOnTheMetric) {
   std::vector<bench::Row> rows{row("pcss", 0.02, 8), row("vssm", 0.03, 8)};
@@ -90,6 +107,22 @@ TEST(Budget, ComparesWhatCanBeCompared) {
   ASSERT_EQ(questions.size(), 4u);
   EXPECT_EQ(questions.back().pixels, 64 * 64) << "the smallest pictures come last";
   for (const MeasuredQuestion& question : questions) EXPECT_EQ(question.settings.size(), 1u);
+}
+
+/// What was measured of one model says nothing of another one in a file of the same name.
+TEST(Budget, TellsFilesOfOneNameApart) {
+  const test::TemporaryFolder folder;
+  const auto file = [&](const char* name) {
+    const std::filesystem::path path = folder / name;
+    std::filesystem::create_directory(path);
+    std::ofstream(path / "scene.gltf") << "{}";
+    return path / "scene.gltf";
+  };
+  const std::filesystem::path measured = file("first"), another = file("second");
+  const std::vector<bench::Row> rows{row("pcss", 1, 1, measured.string())};
+  EXPECT_EQ(measuredQuestions(rows, (measured.parent_path() / "." / "scene.gltf").string()).size(), 1u);
+  EXPECT_TRUE(measuredQuestions(rows, another.string()).empty());
+  EXPECT_EQ(measuredQuestions(rows, "moved/scene.gltf").size(), 1u) << "by name, where it lies no longer";
 }
 
 /// As the bench's tables keep apart what the viewer shows: by mode, playback and reference.

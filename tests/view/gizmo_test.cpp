@@ -82,6 +82,38 @@ TEST(Gizmo, RingsTurnByTheAngleTheyAreDragged) {
   }
 }
 
+/// A lamp that is moved still shines where it shone, and one that is turned stays in its place.
+TEST(Gizmo, WhatAHandleLeavesKeepsItsDigits) {
+  const session::LightEdit now{.position = glm::dvec3(0.123456, 2, 3),
+                               .rotation = glm::vec3(-33.333f, 1, 2),
+                               .size = {},
+                               .colour = {},
+                               .intensity = {}};
+  const glm::dvec3 origin(100, 0, 0);
+  const GizmoPose pose{{0.5554321f, 1, 2}, session::rotationOf({-40.04f, 0, 0})};
+  const session::LightEdit moved = placedBy({Kind::axis, 0}, pose, now, {}, origin, 2);
+  EXPECT_NEAR(moved.position->x, 100.555, 1e-6) << "a millimetre";
+  EXPECT_EQ(moved.rotation, now.rotation);
+  session::LightEdit edit = placedBy({Kind::ring, 1}, pose, now, {}, origin, 2);
+  EXPECT_EQ(edit.position, now.position);
+  EXPECT_NEAR(edit.rotation->x, -40, 1e-4f) << "a tenth of a degree";
+  edit.intensity = 7;
+  const session::LightEdit both = placedBy({Kind::plane, 1}, pose, now, edit, origin, 2);
+  EXPECT_EQ(both.position, moved.position);
+  EXPECT_EQ(both.rotation, edit.rotation) << "as it was turned before";
+  EXPECT_EQ(both.intensity, edit.intensity);
+}
+
+TEST(Gizmo, PlacesLightsAsFarAsTheyHaveAPlace) {
+  session::LightEdit lamp, sun;
+  lamp.position = glm::dvec3(1, 2, 3);
+  sun.rotation = glm::vec3(-60, 0, 0);
+  for (const Kind kind : {Kind::axis, Kind::ring}) {
+    EXPECT_FALSE(placedBy({kind, 0}, {}, lamp, {}, glm::dvec3(0), 1).rotation);
+    EXPECT_FALSE(placedBy({kind, 0}, {}, sun, {}, glm::dvec3(0), 1).position);
+  }
+}
+
 TEST(Gizmo, NothingIsHeldElsewhere) {
   const ScreenCamera camera = screen();
   EXPECT_FALSE(handleAt(camera, {0, 0, 0}, GizmoMode::move, {410, 10}));

@@ -4,9 +4,15 @@
 #include <gtest/gtest.h>
 
 #include <chrono>
+#include <cmath>
+#include <glm/glm.hpp>
+#include <memory>
+#include <span>
 #include <thread>
 
+#include "core/base/error.h"
 #include "core/base/file.h"
+#include "core/technique/technique.h"
 #include "tests/cli/process.h"
 #include "tests/support/gltf_builder.h"
 #include "tests/support/paths.h"
@@ -24,6 +30,64 @@ std::vector<std::byte> lamp(const char* name = "lamp") {
   const int mesh = b.mesh({{"POSITION", corners}}, b.indices({0, 1, 2, 0, 2, 3}), material);
   b.node({{"name", name}, {"mesh", mesh}});
   return b.glb();
+}
+
+/// Darkens everything, in one frame alone.
+class OneFrame : public Technique {
+ public:
+  frame::TextureHandle addPasses(frame::FrameGraph& graph, const TechniqueInputs&,
+                                 const TermRequest& request) override {
+    frame::PassBuilder pass = graph.addPass("clear", "one_frame");
+    const auto target = pass.write(request.target, frame::Access::copyTarget, "black");
+    pass.execute([target](frame::PassContext& passContext) {
+      passContext.gl().ClearTexImage(passContext.texture(target).id(), 0, GL_RED, GL_FLOAT, nullptr);
+    });
+    return target;
+  }
+  bool update(const scene::Pose&) override { throw Error("there is no second frame"); }
+};
+
+constexpr TechniqueInfo kOneFrame{.name = "one_frame",
+                                  .title = "One frame",
+                                  .source = "a test",
+                                  .terms = termSet(Term::visibility),
+                                  .parameters = {},
+                                  .stress = {}};
+
+const TechniquePlugin kOneFramePlugin{
+    {},
+    &kOneFrame,
+    [] { return std::span<const gpu::EmbeddedSource>(); },
+    []() -> std::unique_ptr<Technique> { return std::make_unique<OneFrame>(); }};
+
+/// A picture at rest takes more frames than the one that is shown at first. The window goes on where one of
+/// them fails, and does not try it over and over.
+TEST(PictureStudio, AFrameThatFailsAtRestIsSaid) {
+  const test::TemporaryFolder folder;
+  writeFile(folder / "lamp.glb", lamp());
+  const auto context = Context::create({});
+  gpu::Device device(*context);
+  PictureFacts facts;
+  PictureStudio studio(
+      device, {}, {}, [&](const PictureFacts& newest) { facts = newest; }, [] {});
+  PictureOrder order;
+  order.scene.scene = (folder / "lamp.glb").string();
+  order.scene.aa = 2;
+  order.techniques.push_back({&kOneFramePlugin, ParameterValues(kOneFrame.name, kOneFrame.parameters)});
+  studio.open({.scene = order.scene});
+  ASSERT_TRUE(facts.scene) << facts.message;
+  order.of = facts.scene;
+  order.size = {16, 12};
+  const auto step = [&] { studio.step(order, [] { return false; }); };
+  step();
+  EXPECT_EQ(facts.picture.problem, "there is no second frame");
+  EXPECT_TRUE(facts.settled);
+  const uint64_t pictures = facts.pictures;
+  step();
+  EXPECT_EQ(facts.pictures, pictures);
+  order.scene.aa = 1;
+  step();
+  EXPECT_EQ(facts.picture.problem, "");
 }
 
 /// A picture that is made again gives the scene its lights again, for which the truth stops reading it. Where
@@ -92,6 +156,80 @@ TEST(PictureStudio, TheTruthOfBeforeNeverStandsBesideANewPicture) {
   EXPECT_FALSE(stale);
 }
 
+/// A lamp that an animation turns below a node of unequal scale is no rectangle for a while, and then no
+/// light that could be found. Its picture is refused then, whoever asks, and comes back with the light.
+TEST(PictureStudio, LightsThatWereNoneForAWhileComeBack) {
+  const test::TemporaryFolder folder;
+  GltfBuilder b;
+  const int glow = b.append("materials", {{"emissiveFactor", {1, 1, 1}}});
+  const int corners = b.vec3({{-1, -1, 0}, {1, -1, 0}, {1, 1, 0}, {-1, 1, 0}});
+  const int quad = b.mesh({{"POSITION", corners}}, b.indices({0, 1, 2, 0, 2, 3}), glow);
+  const int holder = b.node({{"scale", {2, 1, 1}}});
+  const int node = b.node({{"name", "lamp"}, {"mesh", quad}});
+  b.root["nodes"][static_cast<size_t>(holder)]["children"] = GltfBuilder::json::array({node});
+  const float angle = glm::radians(22.5f);  // half of how far it turns
+  const int times = b.floats({0, 1}),
+            turns = b.vec4({{0, 0, 0, 1}, {0, 0, std::sin(angle), std::cos(angle)}});
+  b.append("animations",
+           {{"samplers", GltfBuilder::json::array({{{"input", times}, {"output", turns}}})},
+            {"channels", GltfBuilder::json::array(
+                             {{{"sampler", 0}, {"target", {{"node", node}, {"path", "rotation"}}}}})}});
+  writeFile(folder / "lamp.glb", b.glb());
+  const auto context = Context::create({});
+  gpu::Device device(*context);
+  PictureFacts facts;
+  PictureStudio studio(
+      device, {}, {}, [&](const PictureFacts& newest) { facts = newest; }, [] {});
+  PictureOrder order;
+  order.scene.scene = (folder / "lamp.glb").string();
+  order.scene.lightSettings = {"lamp.position=0,2,0"};
+  studio.open({.scene = order.scene});
+  ASSERT_TRUE(facts.scene) << facts.message;
+  order.of = facts.scene;
+  order.size = {16, 12};
+  const auto problemAt = [&](double time, const char* eye) {
+    order.scene.time = time;
+    order.scene.eye = eye;
+    order.scene.target = "0,0,0";
+    studio.step(order, [] { return false; });
+    return facts.picture.problem;
+  };
+  EXPECT_EQ(problemAt(0, "0,0,5"), "");
+  EXPECT_NE(problemAt(0.75, "0,0,5").find("'lamp' is not in the scene"), std::string::npos);
+  EXPECT_NE(problemAt(0.75, "0,0,4"), "") << "also at the same time again";
+  EXPECT_EQ(problemAt(0, "0,0,5"), "");
+  EXPECT_EQ(facts.lights.size(), 1u);
+}
+
+/// What the scene was read from is not lost to a picture, as it is not to limn render.
+TEST(PictureStudio, PicturesDoNotReplaceTheEnvironmentThatLightsThem) {
+  const test::TemporaryFolder folder;
+  writeFile(folder / "lamp.glb", lamp());
+  const std::filesystem::path map = folder / "sky.exr";
+  std::filesystem::copy_file(std::string(test::kBinaryDir) + "/assets/environments/sky.exr", map);
+  const auto bytes = std::filesystem::file_size(map);
+  const auto context = Context::create({});
+  gpu::Device device(*context);
+  PictureFacts facts;
+  PictureStudio studio(
+      device, {}, {}, [&](const PictureFacts& newest) { facts = newest; }, [] {});
+  PictureOrder order;
+  order.scene.scene = (folder / "lamp.glb").string();
+  order.scene.environment = map.string();
+  studio.open({.scene = order.scene});
+  ASSERT_TRUE(facts.scene) << facts.message;
+  order.of = facts.scene;
+  order.size = {16, 12};
+  const auto save = [&](const char* name) {
+    studio.save({.picture = order, .file = folder / name, .command = {}, .frames = {}});
+  };
+  save("sky.exr");
+  EXPECT_TRUE(facts.problem);
+  EXPECT_EQ(std::filesystem::file_size(map), bytes);
+  save("picture.exr");
+  EXPECT_FALSE(facts.problem) << facts.message;
+}
+
 /// From then on, not from its first picture on, whose shaders may take seconds: a light of the scene before
 /// that is changed meanwhile would be one that the scene does not have.
 TEST(PictureStudio, LightsAreThoseOfTheSceneThatWasOpened) {
@@ -151,6 +289,21 @@ TEST(PictureStudio, ProblemsOfShadersEndWithTheScene) {
   open();
   EXPECT_EQ(facts.shaderProblem, "");
   EXPECT_EQ(facts.picture.problem, "");
+}
+
+/// Whoever operates the window by a script reads what happened line by line.
+TEST(PictureStudio, SaysInOneLineWhatFailed) {
+  const test::TemporaryFolder folder;
+  const auto context = Context::create({});
+  gpu::Device device(*context);
+  PictureFacts facts;
+  PictureStudio studio(
+      device, {}, {}, [&](const PictureFacts& newest) { facts = newest; }, [] {});
+  SceneQuestion scene;
+  scene.scene = (folder / "two\nlines.glb").string();
+  studio.open({.scene = scene});
+  EXPECT_TRUE(facts.problem);
+  EXPECT_NE(facts.message.find("two lines.glb"), std::string::npos) << facts.message;
 }
 
 /// What was asked for while an environment that cannot be read was still being opened.

@@ -76,7 +76,7 @@ TEST_F(ViewStateTest, SequencesHaveACommand) {
             "limn render cornell_box --out a.png --frames 3:7 --fps 24");
 }
 
-/// What was changed while the same file was opened again stays; another file begins anew.
+/// What was changed while the same file was opened again stays; another file begins with its own.
 TEST_F(ViewStateTest, ChangesWhileAFileIsOpenedStay) {
   SceneQuestion opened = state_.scene;
   opened.floor = "on";
@@ -221,6 +221,14 @@ TEST(Orbit, StartsWhereTheCameraIs) {
   const glm::mat4 again = scene::lookAt(orbit.eye(), orbit.target(), 0.8f).worldToView;
   for (int c = 0; c < 4; ++c)
     for (int r = 0; r < 4; ++r) EXPECT_NEAR(again[c][r], camera.worldToView[c][r], 2e-5f);
+}
+
+/// From the middle of a room, which lies neither before nor behind the camera, one gets on all the same.
+TEST(Orbit, FliesInsideAScene) {
+  Orbit orbit(scene::lookAt({0, 1, 0}, {0, 1, -1}, 0.8f), {glm::vec3(-10), glm::vec3(10)});
+  const glm::vec3 before = orbit.eye();
+  orbit.fly(0, 0, 0.6f);  // in a second
+  EXPECT_GT(before.z - orbit.eye().z, 0.9f);
 }
 
 TEST(Orbit, NeverTurnsOver) {

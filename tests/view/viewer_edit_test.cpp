@@ -55,6 +55,24 @@ TEST_F(ViewerEditTest, TheCameraAsOpenedIsTheFirstOne) {
   EXPECT_EQ(command("again.exr"), command("moved.exr")) << "the same drag from the same place";
 }
 
+/// A scene that was read again is turned around the same point as before.
+TEST_F(ViewerEditTest, ReadingAgainLeavesThePointThatIsTurnedAround) {
+  const Outcome outcome =
+      view("cornell_box --technique hard_shadow_map --size 160x212 --save a.exr",
+           "save first.exr; point 470 100; xdotool keydown shift; xdotool mousedown 1; frames 2\n"
+           "point 500 130; xdotool mouseup 1; frames 2; xdotool keyup shift; frames 2; save around.exr; "
+           "sleep 1\n" +
+               std::string(kDrag) +
+               "save one.exr; sleep 1; xdotool key ctrl+z; save back.exr\n"
+               "xdotool key F4; hear opened 2; " +
+               kDrag + "save two.exr");
+  ASSERT_EQ(outcome.status, 0) << outcome.err;
+  EXPECT_EQ(outcome.err, "");
+  EXPECT_NE(command("around.exr"), command("one.exr"));
+  EXPECT_EQ(command("back.exr"), command("around.exr"));
+  EXPECT_EQ(command("two.exr"), command("one.exr"));
+}
+
 /// A drag takes a camera from where an animation has brought it, not from where it was opened.
 TEST_F(ViewerEditTest, CamerasThatMoveAreTakenFromWhereTheyAre) {
   GltfBuilder scene;

@@ -211,6 +211,11 @@ TEST_F(ViewerInputTest, RefusesFilesThatItCannotWrite) {
   refused("--save", "picture.jpg", 2, ".exr or .png");
   refused("--screenshot", "/nowhere/window.png", 1, "cannot be written");
   refused("--stats", "/nowhere/stats.json", 1, "cannot be written");
+  const Outcome outcome =
+      run({kBinaries + "limn-view", "balls", "--environment", "view.exr", "--save", "./view.exr"},
+          {{"DISPLAY", ""}});
+  EXPECT_EQ(outcome.status, 2) << "it would be lost";
+  EXPECT_THAT(outcome.err, testing::HasSubstr("./view.exr: cannot be written"));
 }
 
 /// Options that the window does not use are refused, and the device is the one that was named.
@@ -248,7 +253,7 @@ TEST_F(ViewerInputTest, PicturesHaveTheSizeThatIsLeft) {
   EXPECT_EQ(picture("window.png").height(), 42 + 132);
 }
 
-/// Techniques, cameras and what is compared with come back, and go again. The scene being read anew neither
+/// Techniques, cameras and what is compared with come back, and go again. The scene being read again neither
 /// takes back what is done meanwhile nor what was done before.
 TEST_F(ViewerInputTest, UndoesAndRedoes) {
   const Outcome outcome = view(

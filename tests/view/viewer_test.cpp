@@ -163,7 +163,7 @@ TEST_F(ViewerTest, StaysResponsive) {
   EXPECT_GE(number("pictures"), 2);
 }
 
-/// Through all techniques, textures and comparisons and back to the first, the scene opened anew: over and
+/// Through all techniques, textures and comparisons and back to the first, the scene opened again: over and
 /// over, the process does not grow. Allocations are given back at once, so that what stays resident is in
 /// use.
 TEST_F(ViewerTest, DoesNotGrow) {
