@@ -1,10 +1,14 @@
 #include "core/shading/environment.h"
 
 #include <tbb/parallel_for.h>
+#include <xxhash.h>
 
 #include <algorithm>
 #include <cmath>
+#include <list>
+#include <mutex>
 #include <numbers>
+#include <utility>
 
 #include "core/base/error.h"
 #include "core/scene/bilinear.h"
@@ -186,6 +190,44 @@ FilteredMap sourceOf(const scene::Environment& environment) {
   return {environment.width, environment.height, environment.texels};
 }
 
+/// Holds what the last maps became, the one that was asked for last first.
+template <class Filtered>
+class KeptMaps {
+ public:
+  template <class Filter>
+  std::shared_ptr<const Filtered> of(const scene::Environment& environment, const Filter& filter) {
+    const XXH128_hash_t hash =
+        XXH3_128bits(environment.texels.data(), environment.texels.size() * sizeof(vec3));
+    const Map map{environment.width, environment.height, hash.low64, hash.high64};
+    if (auto found = find(map)) return found;
+    auto made = std::make_shared<const Filtered>(filter(environment));
+    const std::lock_guard lock(mutex_);
+    kept_.emplace_front(map, made);
+    if (kept_.size() > kMost) kept_.pop_back();
+    return made;
+  }
+
+ private:
+  static constexpr size_t kMost = 4;  // half a MiB each
+  struct Map {
+    int width, height;
+    uint64_t low, high;  ///< hash of the texels
+    bool operator==(const Map&) const = default;
+  };
+  using Kept = std::pair<Map, std::shared_ptr<const Filtered>>;
+
+  std::shared_ptr<const Filtered> find(const Map& map) {
+    const std::lock_guard lock(mutex_);
+    const auto found = std::ranges::find(kept_, map, &Kept::first);
+    if (found == kept_.end()) return nullptr;
+    kept_.splice(kept_.begin(), kept_, found);
+    return found->second;
+  }
+
+  std::mutex mutex_;
+  std::list<Kept> kept_;
+};
+
 /// One of the texels that a coarser one covers, along one axis.
 struct Share {
   int index;
@@ -265,6 +307,16 @@ FilteredEnvironment filterEnvironment(const scene::Environment& environment) {
 FilteredMap filterGrazing(const scene::Environment& environment) {
   return convolvedOverHemisphere(resampled(sourceOf(environment), kIrradianceSourceWidth, Rows::inside),
                                  [](float cosine) { return cosine * glsl::schlick_weight(cosine); });
+}
+
+std::shared_ptr<const FilteredEnvironment> keptEnvironment(const scene::Environment& environment) {
+  static KeptMaps<FilteredEnvironment> kept;
+  return kept.of(environment, filterEnvironment);
+}
+
+std::shared_ptr<const FilteredMap> keptGrazing(const scene::Environment& environment) {
+  static KeptMaps<FilteredMap> kept;
+  return kept.of(environment, filterGrazing);
 }
 
 std::vector<FilteredMap> radianceLevels(const scene::Environment& environment) {

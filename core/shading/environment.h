@@ -3,6 +3,7 @@
 #pragma once
 
 #include <glm/glm.hpp>
+#include <memory>
 #include <vector>
 
 #include "core/base/export.h"
@@ -46,6 +47,11 @@ LIMN_API FilteredEnvironment filterEnvironment(const scene::Environment& environ
 /// without a map.
 LIMN_API FilteredMap filterGrazing(const scene::Environment& environment);
 
+/// Return the same, which the process keeps for the last maps that it was asked for, known by their texels.
+/// May be called by several threads at once.
+LIMN_API std::shared_ptr<const FilteredEnvironment> keptEnvironment(const scene::Environment& environment);
+LIMN_API std::shared_ptr<const FilteredMap> keptGrazing(const scene::Environment& environment);
+
 /// Returns the levels above a map itself, each half as large in both directions (rounded down, at least 1),
 /// up to one texel: mean radiance over each texel of the level before, weighted by the exact solid angle, so
 /// that every level holds the same light. Throws Error without a map.
@@ -53,7 +59,7 @@ LIMN_API std::vector<FilteredMap> radianceLevels(const scene::Environment& envir
 
 /// Returns the texture of such a map: RGBA32F, bilinear, repeated around the horizon;
 /// "environment_irradiance" in glsl/light/environment.glsl, "environment_grazing" in
-/// glsl/deferred/environment.comp.glsl.
+/// glsl/light/reflected_environment.glsl.
 LIMN_API gpu::Texture makeIrradianceTexture(gpu::Device& device, const FilteredMap& irradiance);
 /// Returns the texture of glossy levels: RGBA16F, bilinear, one level per roughness; "environment_filtered"
 /// in glsl/light/environment.glsl, which says what alpha holds.

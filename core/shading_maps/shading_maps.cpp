@@ -61,9 +61,9 @@ TextureHandle ShadingMapService::ltcTable() {
 
 void ShadingMapService::readReflected(frame::PassBuilder& pass, uint32_t modelKinds) {
   if (!irradiance_.texture) {
-    const shading::FilteredEnvironment filtered = shading::filterEnvironment(environment());
-    irradiance_.texture = shading::makeIrradianceTexture(device_, filtered.irradiance);
-    filtered_.texture = shading::makeFilteredTexture(device_, filtered);
+    const auto filtered = shading::keptEnvironment(environment());
+    irradiance_.texture = shading::makeIrradianceTexture(device_, filtered->irradiance);
+    filtered_.texture = shading::makeFilteredTexture(device_, *filtered);
   }
   pass.read(handleOf(irradiance_, "environment irradiance"), Access::sampled, "environment_irradiance",
             "diffuse light")
@@ -73,7 +73,7 @@ void ShadingMapService::readReflected(frame::PassBuilder& pass, uint32_t modelKi
   constexpr uint32_t entered = 1u << glsl::model_coated | 1u << glsl::model_entry;
   if ((modelKinds & entered) == 0) return;
   const TextureHandle grazing = import(grazing_, "grazing irradiance of the environment", [&] {
-    return shading::makeIrradianceTexture(device_, shading::filterGrazing(environment()));
+    return shading::makeIrradianceTexture(device_, *shading::keptGrazing(environment()));
   });
   pass.read(grazing, Access::sampled, "environment_grazing", "light that enters coats and bodies");
 }

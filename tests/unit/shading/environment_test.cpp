@@ -232,6 +232,23 @@ TEST(Environment, StructuredEnvironmentIsReflectedWithinTheStatedError) {
 TEST(Environment, WithoutAMapThereIsNothingToFilter) {
   EXPECT_THROW(filterEnvironment({}), Error);
   EXPECT_THROW(filterGrazing({}), Error);
+  EXPECT_THROW(keptEnvironment({}), Error);
+  EXPECT_THROW(keptGrazing({}), Error);
+}
+
+TEST(Environment, MapsThatHoldTheSameAreFilteredOnce) {
+  const auto sky = [](float above) {
+    return environmentOf(16, [above](vec3 d) { return vec3(d.y > 0 ? above : 1); });
+  };
+  const auto bright = keptEnvironment(sky(2));
+  const auto grazing = keptGrazing(sky(2));
+  EXPECT_EQ(keptEnvironment(sky(2)), bright);
+  EXPECT_EQ(keptGrazing(sky(2)), grazing);
+  EXPECT_NE(keptEnvironment(sky(3)), bright);
+  EXPECT_NE(keptGrazing(sky(3)), grazing);
+  EXPECT_EQ(keptEnvironment(sky(2)), bright) << "it is still there";
+  EXPECT_TRUE(bright->irradiance.texels == filterEnvironment(sky(2)).irradiance.texels);
+  EXPECT_TRUE(grazing->texels == filterGrazing(sky(2)).texels);
 }
 
 /// Mean and root mean square relative difference of the irradiance over pi from a map of it, over the sphere.
