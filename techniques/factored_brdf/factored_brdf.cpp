@@ -128,6 +128,8 @@ factored::FitChoice described(const ParameterValues& parameters) {
     choice.fit.texels = parameters.integer("texels");
     return choice;
   }
+  // Other fits lie over nothing that is chosen: they are kept once, and have one program.
+  if (fit != tables && fit != pqpDisc && fit != dfgDisc) choice.fit.warped = true;
   const int asked = parameters.integer("fit_texels");
   choice.fit.texels = asked == 0 ? defaultTexels(fit) : std::max(asked, 2);
   if (choice.fit.format == brdf::TableFormat::byte) choice.fit.format = brdf::TableFormat::half;

@@ -87,10 +87,9 @@ class PictureTest : public GlTest {
     return use;
   }
 
-  /// As quick, with small maps and buffers, for laws that hold to the bit or whatever a picture shows: frames
-  /// take a tenth of the time.
-  static render::TechniqueUse smallest(const std::string& name, int lights = 64) {
-    constexpr int most = 64;
+  /// As quick, with maps and buffers of at most that many texels a side, for laws that hold to the bit or
+  /// whatever a picture shows: frames take a tenth of the time.
+  static render::TechniqueUse smallest(const std::string& name, int lights = 64, int most = 64) {
     render::TechniqueUse use = quick(name, lights);
     for (const Parameter& p : use.parameters.declared())
       if (p.type == ParameterType::integer && std::string_view(p.name).ends_with("_size") &&
