@@ -12,6 +12,7 @@
 #include "core/reference/reference.h"
 #include "tests/gpu/foggy_ball.h"
 #include "tests/gpu/render_test.h"
+#include "tests/support/scene_nodes.h"
 
 namespace limn {
 namespace {
@@ -218,7 +219,9 @@ TEST_F(IlluminationSamplesTest, ExtremesGiveNumbers) {
                              {{"bounces", "3"}}}) {
       Values coarse{{"longest_edge", "0.1"}};
       coarse.insert(coarse.end(), values.begin(), values.end());
-      expectWithin(indirect(renderer, coarse), 0, 1e4f);
+      const Image image =
+          picture(renderer, settings(48, 36, Term::indirect, {technique("illumination_samples", coarse)}));
+      expectWithin(image, 0, 1e4f);
     }
   }
 }
@@ -310,6 +313,29 @@ TEST_F(IlluminationSamplesTest, ScenesThatTakeTooMuchMemoryAreRefused) {
   render::Renderer renderer(device(), scene);
   EXPECT_THROW(indirect(renderer, {{"memory", "1"}, {"longest_edge", "0.01"}}), UsageError);
   EXPECT_THROW(indirect(renderer, {{"memory", "1"}, {"link_error", "0.0001"}}), UsageError);
+}
+
+/// A speck of metal that reflects what each of 33,000 elements of a floor sends it: llvmpipe would leave a
+/// part of them out, and the picture would be too dark.
+TEST_F(IlluminationSamplesTest, PixelsOfMoreSamplesThanSoftwareRenderersTakeAreRefused) {
+  scene::Scene scene;
+  const int floor = test::addMaterial(scene, test::lambertian(0.5f));
+  scene::Material metal;
+  metal.baseColour = glm::vec4(0.75f, 0.75f, 0.75f, 1);
+  metal.roughness = 0.06f;
+  for (const float x : {-1.f, 1.f}) test::show(scene, test::quad({x, 0, 0}, {2, 0, 0}, {0, 0, -2}, floor));
+  test::show(scene, test::quad({0, 1, 0}, {0.01f, 0, 0}, {0, 0, 0.01f}, test::addMaterial(scene, metal)));
+  test::shine(scene, test::lamp(glsl::light_point, 10), {0, 3, 0});
+  render::Renderer renderer(device(), scene);
+  const auto shown = [&](const char* longestEdge) {
+    const Values values{{"display", "gather"}, {"link_error", "0.001"}, {"longest_edge", longestEdge}};
+    return mean(picture(renderer, settings(8, 8, Term::indirect, {technique("illumination_samples", values)}),
+                        scene::lookAt({0, 0.5f, 0.5f}, {0, 1, 0}, 0.01f)));
+  };
+  EXPECT_GT(shown("0.1"), 0);
+  if (!device().software()) return;
+  EXPECT_THAT(errorOf([&] { shown("0.0125"); }),
+              testing::HasSubstr("samples at a pixel; software renderers take 65000"));
 }
 
 TEST_F(IlluminationSamplesTest, ScenesWhoseLinksLookAtTooManyPairsAreRefused) {

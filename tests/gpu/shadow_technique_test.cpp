@@ -9,18 +9,27 @@ namespace {
 using namespace limn::test;
 using glm::vec3;
 
-class ShadowTechniqueTest : public BallTest {};
+class ShadowTechniqueTest : public BallTest {
+ protected:
+  /// What cuts surfaces into elements takes seconds for those of the fine ball.
+  static bool cuts(const TechniquePlugin& plugin) { return has(plugin, "longest_edge"); }
+  static BallScene ballFor(const TechniquePlugin& plugin, float scale = 1) {
+    return BallScene(scale, true, glm::mat4(1), cuts(plugin) ? 16 : 64);
+  }
+  static std::map<std::string, std::string> settingsFor(const TechniquePlugin& plugin) {
+    auto settings = quick(plugin);
+    if (cuts(plugin)) settings["longest_edge"] = "0.1";
+    return settings;
+  }
+};
 
 TEST_F(ShadowTechniqueTest, LightsGiveTheSameAloneAndTogether) {
-  const BallScene fine, coarse(1, true, glm::mat4(1), 16);
+  drawn = 64;  // to the bit, pictures and maps of any size
   for (const TechniquePlugin* plugin : techniques()) {
     const std::string name = plugin->info->name;
-    auto settings = quick(*plugin);
-    if (has(*plugin, "shadow_map_size")) settings["shadow_map_size"] = "64";  // to the bit, at any size
-    // What cuts surfaces into elements takes seconds for those of the fine ball.
-    const bool cuts = has(*plugin, "longest_edge");
-    if (cuts) settings["longest_edge"] = "0.1";
-    const BallScene& s = cuts ? coarse : fine;
+    auto settings = settingsFor(*plugin);
+    if (has(*plugin, "shadow_map_size")) settings["shadow_map_size"] = "64";
+    const BallScene s = ballFor(*plugin);
     const Answer together = visibility(name, settings, s.scene, s.pose, s.camera);
     for (uint32_t l = 0; l < s.pose.lights.size(); ++l) {
       const Answer alone = visibility(name, settings, s.scene, s.pose, s.camera, {l});
@@ -49,11 +58,12 @@ TEST_F(ShadowTechniqueTest, PlanesDoNotShadowThemselvesAtAnySlopeAndLightSize) {
 
 TEST_F(ShadowTechniqueTest, ScaleChangesNothing) {
   for (const TechniquePlugin* plugin : techniques()) {
-    const BallScene one(1);
-    const Answer expected = visibility(plugin->info->name, quick(*plugin), one.scene, one.pose, one.camera);
+    const auto settings = settingsFor(*plugin);
+    const BallScene one = ballFor(*plugin);
+    const Answer expected = visibility(plugin->info->name, settings, one.scene, one.pose, one.camera);
     for (const float scale : {1e-4f, 1e4f}) {
-      const BallScene s(scale);
-      const Answer v = visibility(plugin->info->name, quick(*plugin), s.scene, s.pose, s.camera);
+      const BallScene s = ballFor(*plugin, scale);
+      const Answer v = visibility(plugin->info->name, settings, s.scene, s.pose, s.camera);
       for (size_t l = 0; l < v.lights.size(); ++l) {
         double squares = 0;
         for (size_t i = 0; i < v.lights[l].size(); ++i)

@@ -45,13 +45,17 @@ class SubsurfaceTechniqueTest : public RenderTest {
     return scene;
   }
 
-  static Image drawn(const scene::Scene& scene, const std::vector<render::TechniqueUse>& techniques,
+  static Image drawn(render::Renderer& renderer, const std::vector<render::TechniqueUse>& techniques,
                      float size = 1) {
-    render::Renderer renderer(device(), scene);
     renderer.configure(settings(kPictureSide, kPictureSide, Term::subsurface, techniques));
     renderer.setCamera(scene::lookAt(size * vec3(0.5f, 1.5f, 4), vec3(0), 0.7f));
     renderer.render();
     return renderer.read();
+  }
+  static Image drawn(const scene::Scene& scene, const std::vector<render::TechniqueUse>& techniques,
+                     float size = 1) {
+    render::Renderer renderer(device(), scene);
+    return drawn(renderer, techniques, size);
   }
 
   /// The picture of a ball of radius 1 at a time of the scene's first animation.
@@ -100,10 +104,11 @@ TEST_F(SubsurfaceTechniqueTest, BodiesGainNothing) {
     scene.environment.width = 16;
     scene.environment.height = 8;
     scene.environment.texels.assign(128, vec3(1));
-    const Image local = drawn(scene, {});
+    render::Renderer renderer(device(), scene);
+    const Image local = drawn(renderer, {});
     for (const render::TechniqueUse& use : uses()) {
       SCOPED_TRACE(use.plugin->info->name);
-      const Image image = drawn(scene, {use});
+      const Image image = drawn(renderer, {use});
       expectWithin(image, 0, 1);
       double most = 0;
       for (size_t i = 0; i < image.data().size(); ++i)
@@ -143,11 +148,12 @@ TEST_F(SubsurfaceTechniqueTest, ExtremeMatterGivesFiniteLight) {
         scene.materials[0].ior = ior;
         scene.materials[0].subsurface->absorption = absorption;
         scene.materials[0].baseColour = albedo(absorption, ior);
+        render::Renderer renderer(device(), scene);
         for (const char* profile : {"dipole", "normalised_diffusion"})
           for (render::TechniqueUse& use : uses()) {
             SCOPED_TRACE(use.plugin->info->name);
             use.parameters.set("profile", profile);
-            expectWithin(drawn(scene, {use}), 0, 100);
+            expectWithin(drawn(renderer, {use}), 0, 100);
           }
       }
 }

@@ -5,8 +5,10 @@
 #include <algorithm>
 #include <cmath>
 
+#include "core/scene/density_grid.h"
 #include "core/shading_maps/shading_maps.h"
 #include "tests/gpu/subtractive_harness.h"
+#include "tests/support/density_grids.h"
 #include "tests/support/scene_nodes.h"
 
 namespace limn {
@@ -23,11 +25,11 @@ TEST_F(SubtractiveShadowsTest, WhereNothingIsHiddenTheLightIsTheUnshadowedOneToT
   for (const char* combine : {"subtract", "ratio", "ratio_split"})
     for (const char* block : {"1", "2", "4", "32"})
       for (const char* lights : {"1", "25", "200"})
-        EXPECT_LE(
-            largestDifference(direct(renderer, 37, 23,
-                                     {shadows({{"combine", combine}, {"block", block}, {"lights", lights}})}),
-                              unshadowed),
-            contraction())
+        EXPECT_LE(largestDifference(
+                      direct(renderer, 37, 23,
+                             {smallShadows({{"combine", combine}, {"block", block}, {"lights", lights}})}),
+                      unshadowed),
+                  contraction())
             << combine << ' ' << block << ' ' << lights;
 }
 
@@ -41,7 +43,7 @@ TEST_F(SubtractiveShadowsTest, WhereNothingIsHiddenLobesHaveAllOfTheirLight) {
     const auto shown = [&](const char* show, const char* block, const char* lights) {
       return direct(
           renderer, 37, 23,
-          {shadows({{"unshadowed", source}, {"block", block}, {"lights", lights}, {"show", show}})});
+          {smallShadows({{"unshadowed", source}, {"block", block}, {"lights", lights}, {"show", show}})});
     };
     const Image unshadowed = shown("unshadowed", "1", "1");
     EXPECT_GT(mean(unshadowed), 0.1) << source;
@@ -58,19 +60,20 @@ TEST_F(SubtractiveShadowsTest, AddedAtEveryPixelItIsTheSampledEnvironment) {
   const scene::Scene scene = lit(coarse("balls"), sky(), 0);
   render::Renderer renderer(device(), scene);
   const Image sampled =
-      direct(renderer, 64, 48, {technique("sampled_environment_light", {{"samples", "40"}})});
+      direct(renderer, 64, 48,
+             {technique("sampled_environment_light", {{"samples", "40"}, {"shadow_map_size", "128"}})});
   const auto added = [&](const char* time, const char* demodulate, const char* memory) {
     return direct(renderer, 64, 48,
-                  {shadows({{"combine", "add"},
-                            {"block", "1"},
-                            {"lights", "40"},
-                            {"frame_time", time},
-                            {"demodulate", demodulate},
-                            {"memory", memory}})});
+                  {smallShadows({{"combine", "add"},
+                                 {"block", "1"},
+                                 {"lights", "40"},
+                                 {"frame_time", time},
+                                 {"demodulate", demodulate},
+                                 {"memory", memory}})});
   };
-  EXPECT_EQ(largestDifference(added("0", "true", "256"), sampled), 0);
+  EXPECT_EQ(largestDifference(added("0", "true", "16"), sampled), 0);
   for (const char* demodulate : {"true", "false"})
-    for (const char* memory : {"256", "16"})
+    for (const char* memory : {"16", "1"})
       EXPECT_LT(largestDifference(added("10000", demodulate, memory), sampled), 1e-5 * largest(sampled))
           << demodulate << ' ' << memory;
 }
@@ -80,15 +83,37 @@ TEST_F(SubtractiveShadowsTest, OfTheSameLightsTheDifferenceIsTheSum) {
   render::Renderer renderer(device(), scene);
   const auto with = [&](const char* combine) {
     return direct(renderer, 64, 48,
-                  {shadows({{"combine", combine},
-                            {"block", "1"},
-                            {"lights", "40"},
-                            {"unshadowed", "lights"},
-                            {"unshadowed_factor", "1"}})});
+                  {smallShadows({{"combine", combine},
+                                 {"block", "1"},
+                                 {"lights", "40"},
+                                 {"unshadowed", "lights"},
+                                 {"unshadowed_factor", "1"}})});
   };
   const Image added = with("add");
   for (const char* combine : {"subtract", "ratio", "ratio_split"})
     EXPECT_LT(largestDifference(with(combine), added), 1e-5 * largest(added)) << combine;
+}
+
+/// Software renderers leave loops early, which would make the light without shadows too dark.
+TEST_F(SubtractiveShadowsTest, UnshadowedSamplesThatLoopsDoNotTakeAreRefused) {
+  if (!context().info().software) GTEST_SKIP() << "loops of GPUs have no end of their own";
+  const scene::Scene clear = lit(floor(), uniform(1), 0);
+  scene::Scene hazy = clear;
+  hazy.medium.sigmaA = vec3(1e-6f);
+  scene::setGrid(hazy.medium, test::constantGrid(scene::evaluate(hazy, 0).bounds, 1));
+  const auto with = [&](const scene::Scene& scene, const char* lights) {
+    render::Renderer renderer(device(), scene);
+    return direct(renderer, 8, 6,
+                  {shadows({{"lights", lights},
+                            {"block", "1"},
+                            {"unshadowed", "lights"},
+                            {"unshadowed_factor", "64"},
+                            {"shadow_map_size", "16"}})});
+  };
+  expectWithin(with(clear, "400"), 0.97f, 1.03f);
+  expectWithin(with(hazy, "7"), 0.97f, 1.03f);
+  EXPECT_THAT(errorOf([&] { with(clear, "500"); }), testing::HasSubstr("takes at most 30000"));
+  EXPECT_THAT(errorOf([&] { with(hazy, "8"); }), testing::HasSubstr("where a medium has a grid"));
 }
 
 TEST_F(SubtractiveShadowsTest, LightLiesBetweenNothingAndTheUnshadowedLight) {
@@ -100,7 +125,7 @@ TEST_F(SubtractiveShadowsTest, LightLiesBetweenNothingAndTheUnshadowedLight) {
       for (const char* block : {"1", "4"})
         for (const char* lights : {"1", "25"}) {
           const Image picture = direct(
-              renderer, 64, 48, {shadows({{"combine", combine}, {"block", block}, {"lights", lights}})});
+              renderer, 64, 48, {smallShadows({{"combine", combine}, {"block", block}, {"lights", lights}})});
           for (size_t i = 0; i < picture.data().size(); ++i) {
             EXPECT_GE(picture.data()[i], 0) << name << combine << block;
             EXPECT_LE(picture.data()[i], unshadowed.data()[i] * (1 + 1e-5f)) << name << combine << block;
@@ -116,7 +141,7 @@ TEST_F(SubtractiveShadowsTest, LightIsNoMoreThanThatOfSampledOrCachedLobes) {
     const auto shown = [&](const char* show, const char* combine, const char* block) {
       return direct(
           renderer, 64, 48,
-          {shadows({{"unshadowed", source}, {"combine", combine}, {"block", block}, {"show", show}})});
+          {smallShadows({{"unshadowed", source}, {"combine", combine}, {"block", block}, {"show", show}})});
     };
     const Image unshadowed = shown("unshadowed", "ratio", "1");
     for (const char* combine : {"subtract", "ratio", "ratio_split"})
@@ -148,7 +173,7 @@ TEST_F(SubtractiveShadowsTest, WhatIsShownAddsUpToTheUnshadowedLight) {
     const auto shown = [&](const char* show, const char* block) {
       return direct(
           renderer, kWidth, kHeight,
-          {shadows({{"combine", combine}, {"demodulate", "false"}, {"block", block}, {"show", show}})});
+          {smallShadows({{"combine", combine}, {"demodulate", "false"}, {"block", block}, {"show", show}})});
     };
     for (const char* block : {"1", "4"}) {
       EXPECT_LE(largestDifference(shown("unshadowed", block), unshadowed), 1e-6 * most) << combine << block;
@@ -318,15 +343,12 @@ TEST_F(SubtractiveShadowsTest, BatchesOfAnySizeGiveTheSamePicture) {
         // Of coats one way to combine is enough: all hand on the same sums.
         if (name != std::string_view("balls") && combine != std::string_view("ratio_split")) continue;
         const auto with = [&](const char* memory) {
-          return direct(renderer, 64, 48,
-                        {shadows({{"combine", combine},
-                                  {"block", block},
-                                  {"lights", "40"},
-                                  {"shadow_map_size", "256"},
-                                  {"memory", memory}})});
+          return direct(
+              renderer, 64, 48,
+              {smallShadows({{"combine", combine}, {"block", block}, {"lights", "40"}, {"memory", memory}})});
         };
         // Shares are kept in 16 bits.
-        EXPECT_LT(rmse(with("4"), with("256")), 2e-5) << name << combine << block;
+        EXPECT_LT(rmse(with("1"), with("16")), 2e-5) << name << combine << block;
       }
   }
 }
@@ -414,7 +436,7 @@ TEST_F(SubtractiveShadowsTest, ExtremesStayFinite) {
       for (const char* block : {"1", "32"})
         for (const char* lights : {"1", "4"}) {
           const Image picture = direct(
-              renderer, 21, 13, {shadows({{"combine", combine}, {"block", block}, {"lights", lights}})});
+              renderer, 21, 13, {smallShadows({{"combine", combine}, {"block", block}, {"lights", lights}})});
           for (const float v : picture.data()) EXPECT_TRUE(std::isfinite(v) && v >= 0) << combine << block;
           const bool bounded = std::string_view(combine) != "add";
           EXPECT_TRUE(!bounded || largest(picture) <= most * (1 + 1e-5)) << combine << block;
@@ -422,6 +444,7 @@ TEST_F(SubtractiveShadowsTest, ExtremesStayFinite) {
   }
 }
 
+/// Were each sample of the truth off by three times its mean, that of all 884,736 would be by 0.3 %.
 TEST_F(SubtractiveShadowsTest, RegionsStandForAllOfTheLight) {
   const Values regions{{"block", "1"}, {"sampling", "regions"}, {"region_threshold", "0.1"}};
   const auto combined = [&](const char* combine) {
@@ -435,7 +458,7 @@ TEST_F(SubtractiveShadowsTest, RegionsStandForAllOfTheLight) {
   for (const float v : open.data()) EXPECT_NEAR(v, 0.7f, 0.02f * 0.7f);
   const scene::Scene scene = lit(asset("balls"), sky(), 0);
   render::Renderer renderer(device(), scene);
-  const Image truth = reference(scene, settings(96, 72, Term::direct), 1024);
+  const Image truth = reference(scene, settings(96, 72, Term::direct), 128);
   for (const char* combine : {"add", "ratio_split"})
     EXPECT_NEAR(mean(direct(renderer, 96, 72, {combined(combine)})), mean(truth), 0.05 * mean(truth))
         << combine;

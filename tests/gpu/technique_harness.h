@@ -45,6 +45,7 @@ class TechniqueTest : public OncePerRenderer<SharedProgramsTest> {
  protected:
   static constexpr int side = 128;
   bool bound = false;  ///< the technique's bound answers in its place, where it has one
+  int drawn = side;    ///< width and height of pictures; floorErrors() looks at those of `side`
 
   static TechniqueRegistry& registry() {
     static const std::filesystem::path folder = std::filesystem::path(kBinaryDir) / "lib/limn/techniques";
@@ -65,13 +66,13 @@ class TechniqueTest : public OncePerRenderer<SharedProgramsTest> {
     }
 
     scene::GpuScene gpuScene(device(), scene);
-    gpuScene.update(pose, camera, {side, side}, 0);
+    gpuScene.update(pose, camera, {drawn, drawn}, 0);
     FrameServices services = render::makeServices(device(), gpuScene);
     frame::ResourcePool pool(device());
     scene::GBufferPass gbufferPass;
     frame::FrameGraph graph;
     const SceneHandles handles = gpuScene.import(graph);
-    const GBuffer gbuffer = gbufferPass.add(graph, gpuScene, handles, {side, side});
+    const GBuffer gbuffer = gbufferPass.add(graph, gpuScene, handles, {drawn, drawn});
     const auto building = services.begin(graph, handles, pose);
     const auto instance = plugin.create();
     const TechniqueInputs inputs{.scene = scene,
@@ -81,7 +82,7 @@ class TechniqueTest : public OncePerRenderer<SharedProgramsTest> {
                                  .parameters = parameters,
                                  .handles = handles,
                                  .gbuffer = gbuffer,
-                                 .size = {side, side},
+                                 .size = {drawn, drawn},
                                  .bound = bound};
     const frame::TextureHandle target =
         term == Term::visibility ? visibilityTarget(graph, lights.size()) : black(graph);
@@ -94,18 +95,19 @@ class TechniqueTest : public OncePerRenderer<SharedProgramsTest> {
     graph.execute();
 
     Answer result;
-    result.width = result.height = side;
-    result.depth.resize(side * side);
-    result.instance.resize(side * side);
+    result.width = result.height = drawn;
+    const auto pixels = static_cast<size_t>(drawn * drawn);
+    result.depth.resize(pixels);
+    result.instance.resize(pixels);
     const size_t layerCount = term == Term::visibility ? lights.size() : 1;
-    std::vector<float> layers(layerCount * side * side);
+    std::vector<float> layers(layerCount * pixels);
     graph.texture(gbuffer.depth).read(0, GL_RED, GL_FLOAT, result.depth.data(), result.depth.size() * 4);
     graph.texture(gbuffer.instance)
         .read(0, GL_RED_INTEGER, GL_UNSIGNED_INT, result.instance.data(), result.instance.size() * 4);
     graph.texture(written).read(0, GL_RED, GL_FLOAT, layers.data(), layers.size() * 4);
     for (size_t l = 0; l < layerCount; ++l) {
-      const auto first = layers.begin() + static_cast<std::ptrdiff_t>(l * side * side);
-      result.lights.emplace_back(first, first + side * side);
+      const auto first = layers.begin() + static_cast<std::ptrdiff_t>(l * pixels);
+      result.lights.emplace_back(first, first + static_cast<std::ptrdiff_t>(pixels));
     }
     for (const frame::PassReport& pass : graph.explain())
       if (pass.technique == technique && pass.state == frame::PassState::run)
@@ -118,19 +120,19 @@ class TechniqueTest : public OncePerRenderer<SharedProgramsTest> {
   }
 
  private:
-  static frame::TextureHandle visibilityTarget(frame::FrameGraph& graph, size_t lights) {
+  frame::TextureHandle visibilityTarget(frame::FrameGraph& graph, size_t lights) const {
     return graph.createTexture("visibility", {.target = GL_TEXTURE_2D_ARRAY,
                                               .format = GL_R16,
-                                              .width = side,
-                                              .height = side,
+                                              .width = drawn,
+                                              .height = drawn,
                                               .layers = static_cast<int>(lights)});
   }
 
   /// A radiance to add to.
-  static frame::TextureHandle black(frame::FrameGraph& graph) {
+  frame::TextureHandle black(frame::FrameGraph& graph) const {
     frame::PassBuilder clear = graph.addPass("clear", "test");
     const frame::TextureHandle target =
-        clear.write(graph.createTexture("radiance", {.format = GL_RGBA32F, .width = side, .height = side}),
+        clear.write(graph.createTexture("radiance", {.format = GL_RGBA32F, .width = drawn, .height = drawn}),
                     frame::Access::copyTarget, "black");
     clear.execute([target](frame::PassContext& context) {
       context.gl().ClearTexImage(context.texture(target).id(), 0, GL_RGBA, GL_FLOAT, nullptr);
