@@ -29,7 +29,7 @@ struct StressArguments {
 
 struct Case {
   const TechniquePlugin* technique;
-  const StressCase* stressCase;
+  StressCase stressCase;
   bool own;
 };
 
@@ -49,7 +49,7 @@ std::vector<Case> chosenCases(const TechniqueRegistry& registry, const StressArg
   std::vector<Case> cases;
   const auto add = [&](const TechniquePlugin* technique, const StressCase& c, bool own) {
     if (std::string_view(c.name).find(options.filter) != std::string_view::npos)
-      cases.push_back({technique, &c, own});
+      cases.push_back({technique, bench::stressCaseFor(*technique->info, c), own});
   };
   for (const TechniquePlugin* technique : chosen(registry, options.techniques)) {
     for (const StressCase& c : bench::commonStressCases())
@@ -65,8 +65,8 @@ bool hasFailed(const bench::StressResult& result) {
 }
 
 bool isOf(const bench::StressResult& result, const Case& c) {
-  return result.technique == c.technique->info->name && result.name == c.stressCase->name &&
-         result.scene == c.stressCase->scene;
+  return result.technique == c.technique->info->name && result.name == c.stressCase.name &&
+         result.scene == c.stressCase.scene;
 }
 
 /// The results in a folder: written after every case, so that a run that was stopped goes on where it was.
@@ -91,8 +91,8 @@ class Table {
   /// Whether the case has a result of what it asks for and is measured with now, and has not failed.
   bool holds(const Case& c, const bench::Provenance& now) const {
     return std::ranges::any_of(results_, [&](const bench::StressResult& r) {
-      return isOf(r, c) && !hasFailed(r) && r.settings == c.stressCase->settings &&
-             r.beside == c.stressCase->beside && r.allowed == c.stressCase->factor &&
+      return isOf(r, c) && !hasFailed(r) && r.settings == c.stressCase.settings &&
+             r.beside == c.stressCase.beside && r.allowed == c.stressCase.factor &&
              bench::staleness(r.provenance, now).empty();
     });
   }
@@ -130,9 +130,9 @@ class Table {
 /// What the case is measured with now.
 bench::Provenance provenanceOf(const Case& c, session::CaseOrigins& origins) {
   bench::Case what;
-  what.scene = c.stressCase->scene;
+  what.scene = c.stressCase.scene;
   what.technique = c.technique->info->name;
-  if (const std::string_view beside = c.stressCase->beside; !beside.empty())
+  if (const std::string_view beside = c.stressCase.beside; !beside.empty())
     what.technique = fmt::format("{},{}", beside, what.technique);
   what.defaultLights = "off";
   return origins.of(what);
@@ -157,10 +157,10 @@ int runStress(const StressArguments& options) {
     for (std::size_t i = 0; i < cases.size(); ++i) {
       const Case& c = cases[i];
       progress.update(double(i) / double(cases.size()),
-                      fmt::format("{}: {}", c.technique->info->name, c.stressCase->name));
+                      fmt::format("{}: {}", c.technique->info->name, c.stressCase.name));
       bench::Provenance now = provenanceOf(c, origins);
       if (table.holds(c, now)) continue;
-      bench::StressResult result = stress.run(*c.technique, *c.stressCase, c.own);
+      bench::StressResult result = stress.run(*c.technique, c.stressCase, c.own);
       result.provenance = std::move(now);
       context->throwErrors();
       table.add(std::move(result));

@@ -154,6 +154,15 @@ std::span<const StressCase> commonStressCases() {
   return kCommon;
 }
 
+StressCase stressCaseFor(const TechniqueInfo& technique, StressCase stressCase) {
+  const bool anyScene = std::string_view(stressCase.scene) == "balls";
+  if (anyScene && technique.places) stressCase.scene = "bump_wall";
+  if (anyScene && contains(technique.terms, Term::subsurface)) stressCase.scene = "translucent_head";
+  const bool wantsShadows = (technique.terms & (Term::surface | Term::subsurface)) != 0;
+  if (wantsShadows && *stressCase.beside == '\0') stressCase.beside = "ray_traced_area_light";
+  return stressCase;
+}
+
 StressRun::StressRun(gpu::Device& device, const TechniqueRegistry& registry,
                      std::function<scene::Scene(const std::string&)> scene, StressOptions options)
     : device_(device), registry_(registry), scene_(std::move(scene)), options_(options) {}
@@ -289,7 +298,8 @@ StressAnswer StressRun::answer(const TechniquePlugin& technique, const StressCas
   return answer;
 }
 
-StressResult StressRun::run(const TechniquePlugin& technique, const StressCase& c, bool own) {
+StressResult StressRun::run(const TechniquePlugin& technique, const StressCase& stressCase, bool own) {
+  const StressCase c = stressCaseFor(*technique.info, stressCase);
   StressResult result{.technique = technique.info->name,
                       .name = c.name,
                       .scene = c.scene,

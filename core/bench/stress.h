@@ -62,6 +62,12 @@ struct StressResult {
 /// Returns the extreme cases that every technique has to handle.
 LIMN_API std::span<const StressCase> commonStressCases();
 
+/// Returns the case as a technique meets it. In place of balls, which a case has that names no scene, one
+/// that answers for translucent bodies or height maps meets a scene that has them. One that answers for
+/// materials or light below surfaces has ray_traced_area_light beside it, where nothing else is: the
+/// reference's light has shadows, and a picture without them errs by those more than by anything else.
+LIMN_API StressCase stressCaseFor(const TechniqueInfo& technique, StressCase stressCase);
+
 struct StressOptions {
   int width = 128, height = 96;
   int spp = 64;  ///< of the references

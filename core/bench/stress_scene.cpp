@@ -262,6 +262,7 @@ scene::Scene withModels(scene::Scene scene) {
     copper.kind = glsl::model_torrance_sparrow;
     copper.eta = {0.2f, 0.92f, 1.1f};
     copper.k = {3.91f, 2.45f, 2.14f};
+    copper.ks = glm::vec3(1);
     copper.roughness = glm::vec2(std::max(material.roughness * material.roughness, 0.05f));
     scene::setModel(material, copper);
   }

@@ -65,6 +65,8 @@ class StressTest : public RenderTest {
     for (const bench::StressAnswer& answer : result.answers) {
       EXPECT_NE(answer.verdict, StressVerdict::refused)
           << result.technique << ", " << answer.term << ": " << answer.message;
+      EXPECT_GT(answer.benign, 0) << result.technique << ", " << answer.term
+                                  << ": the unchanged scene shows nothing of it";
       asked.push_back(answer.term);
     }
     EXPECT_THAT(asked, testing::UnorderedElementsAreArray(terms));

@@ -2,12 +2,14 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <nlohmann/json.hpp>
 
 #include "core/base/error.h"
 #include "core/bench/private/stress_scene.h"
 #include "core/bench/stress.h"
 #include "core/scene/subsurface.h"
+#include "glsl/materials/model.glsl"
 
 namespace limn::bench {
 namespace {
@@ -40,6 +42,45 @@ TEST(BenchStress, AsksForLightWhereVisibilityKnowsNothingOfTheCase) {
   EXPECT_THAT(asked(Term::visibility | Term::indirect | Term::environment, StressChange::noLight),
               ElementsAre("final"));
   EXPECT_THAT(asked(Term::visibility | Term::media, StressChange::noLight), ElementsAre("final", "media"));
+}
+
+TEST(BenchStress, CasesOfNoSceneShowATechniqueWhatItAnswersFor) {
+  const auto scene = [](TermSet terms, bool places, const StressCase& c) {
+    TechniqueInfo info{};
+    info.terms = terms;
+    info.places = places;
+    return std::string(stressCaseFor(info, c).scene);
+  };
+  const StressCase common = commonStressCases()[0], foliage{.name = "foliage", .scene = "plant"};
+  EXPECT_EQ(scene(termSet(Term::visibility), false, common), "balls");
+  EXPECT_EQ(scene(termSet(Term::relief), true, common), "bump_wall");
+  EXPECT_EQ(scene(termSet(Term::indirect), true, common), "bump_wall");
+  EXPECT_EQ(scene(termSet(Term::subsurface), false, common), "translucent_head");
+  EXPECT_EQ(scene(termSet(Term::subsurface), false, foliage), "plant");
+}
+
+TEST(BenchStress, MaterialsAndLightBelowSurfacesAreShownWithShadows) {
+  const auto beside = [](Term term, const char* given) {
+    TechniqueInfo info{};
+    info.terms = termSet(term);
+    return std::string(stressCaseFor(info, {.name = "any", .beside = given}).beside);
+  };
+  EXPECT_EQ(beside(Term::surface, ""), "ray_traced_area_light");
+  EXPECT_EQ(beside(Term::subsurface, ""), "ray_traced_area_light");
+  EXPECT_EQ(beside(Term::surface, "vssm"), "vssm");
+  EXPECT_EQ(beside(Term::direct, ""), "");
+}
+
+/// A factor of 0 on their lobes would make all pictures black and all errors 0.
+TEST(StressedScene, ModelsReflectLight) {
+  scene::Scene scene;
+  scene.materials.resize(2);
+  scene.materials[1].transmission = 1;
+  const scene::Scene copper = withModels(scene);
+  ASSERT_TRUE(copper.materials[0].model);
+  const glm::vec3 albedo = glsl::model_albedo(*copper.materials[0].model);
+  EXPECT_GT(std::min({albedo.x, albedo.y, albedo.z}), 0.3f);
+  EXPECT_FALSE(copper.materials[1].model) << "glass stays glass";
 }
 
 TEST(StressedScene, WhatScattersFollowsItsSurface) {
