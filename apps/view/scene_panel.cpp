@@ -127,6 +127,13 @@ bool ViewerWindow::recentScene(const fs::path& file) {
   return chosen;
 }
 
+/// An entry for one of limn's own, which is opened where it is chosen.
+void ViewerWindow::ownScene(const std::string& name) {
+  const bool chosen = ImGui::Selectable(name.c_str());
+  if (const auto about = aboutScenes_.find(name); about != aboutScenes_.end()) tip(about->second);
+  if (chosen) openFile(name);
+}
+
 /// What was opened before, and limn's own scenes.
 void ViewerWindow::sceneChooser() {
   constexpr int kArrow =
@@ -135,8 +142,7 @@ void ViewerWindow::sceneChooser() {
   for (const fs::path& file : recentScenes_)
     if (recentScene(file)) break;
   if (!recentScenes_.empty() && !ownScenes_.empty()) ImGui::Separator();
-  for (const std::string& name : ownScenes_)
-    if (ImGui::Selectable(name.c_str())) openFile(name);
+  for (const std::string& name : ownScenes_) ownScene(name);
   ImGui::EndCombo();
 }
 

@@ -31,7 +31,7 @@ void ViewerWindow::startPage() {
   if (!ownScenes_.empty() && ImGui::BeginTable("scenes", columns)) {
     for (const std::string& name : ownScenes_) {
       ImGui::TableNextColumn();
-      if (ImGui::Selectable(name.c_str())) openFile(name);
+      ownScene(name);
     }
     ImGui::EndTable();
   }

@@ -89,6 +89,7 @@ ViewerWindow::ViewerWindow(const ViewerOptions& options)
   thread_ = std::make_unique<PictureThread>(
       PictureThreadOptions{options.device, options.debug, options.shaders, options.cache});
   ownScenes_ = session::sceneNames();
+  aboutScenes_ = session::aboutScenes();
   recentScenes_ = recentScenes();
   if (!state_.scene.scene.empty()) postOpening({.scene = state_.scene, .needed = true});
   if (!options_.steps.empty()) state_.techniques = options_.steps.front().techniques.resolve(registry_);

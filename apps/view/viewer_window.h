@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <future>
+#include <map>
 #include <memory>
 #include <optional>
 #include <string>
@@ -95,6 +96,7 @@ class ViewerWindow {
   void scenePanel();
   void sceneChooser();
   bool recentScene(const std::filesystem::path& file);
+  void ownScene(const std::string& name);
   void cameraChooser();
   void environmentPanel();
   void environmentLightRows(SceneQuestion& wanted);
@@ -151,6 +153,7 @@ class ViewerWindow {
   EditHistory history_;
   bool unnoted_ = false;  ///< something has changed that history_ does not know yet
   std::vector<std::string> ownScenes_;
+  std::map<std::string, std::string> aboutScenes_;  ///< what limn's own are for
   std::vector<std::filesystem::path> recentScenes_;
   std::optional<FolderListing> browsing_;  ///< what the dialog shows while it is open
   Beside beside_ = Beside::nothing;
