@@ -23,7 +23,7 @@ function summary(tables) {
       el("p", {}, el("strong", {}, renderer), known ? ` – ${software ? "software" : "hardware"} rendering. ` : ". ",
         all("drivers").map((driver) => `Driver: ${driver}. `), machines.map((machine) => `Machine: ${machine}. `),
         `${rows} row${rows === 1 ? "" : "s"}${failed ? `, ${failed} failed` : ""}; `,
-        `medians of ${counts("frames")} frames a turn (turns: ${counts("turns") || "none"}), after ${counts("warmup")} to warm up.`),
+        `medians of ${counts("frames")} ${counts("frames") === "1" ? "frame" : "frames"} a turn (turns: ${counts("turns") || "none"}), after ${counts("warmup")} to warm up.`),
       several.length ? el("p", {class: "note"}, `Rows of several ${several.join(" and ")}: each has charts and tables of its own.`) : null,
       software ? el("p", {class: "note"}, "Software rendering says nothing about the times of a GPU.") : null);
   });

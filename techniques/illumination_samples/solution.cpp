@@ -28,6 +28,14 @@ Elements::Elements(frame::FrameGraph& graph, const TechniqueInputs& inputs, cons
       pose_(inputs.pose),
       elements_(inputs.scene, inputs.pose, settings.longestEdge, mostElements(settings)) {
   gpu::Device& device = inputs.gpuScene.device();
+  const auto most = static_cast<size_t>(device.limits().maxStorageBlockBytes);
+  const size_t largest = std::max({elements_.leaves().size_bytes(), elements_.triangles().size_bytes(),
+                                   elements_.forest().slots() * sizeof(glsl::SampleSender)});
+  if (largest > most)
+    throw UsageError(fmt::format(
+        "illumination samples: {} elements take {} MiB, more than the {} MiB of a storage buffer; "
+        "raise longest_edge",
+        elements_.forest().slots(), largest >> 20, most >> 20));
   leafBuffer_ = gpu::Buffer(device, "leaves", elements_.leaves().size_bytes(), gpu::BufferUse::updated);
   cornerBuffer_ = gpu::Buffer::of(device, "triangles between leaves", elements_.triangles());
   parentBuffer_ = gpu::Buffer::of(device, "parents of element groups", elements_.forest().parents());

@@ -12,6 +12,7 @@
 #include "apps/view/viewer.h"
 #include "core/base/error.h"
 #include "core/base/version.h"
+#include "core/base/whereabouts.h"
 #include "core/context/context.h"
 #include "core/session/find.h"
 
@@ -74,6 +75,7 @@ void refuseGiven(const CLI::App& program, std::initializer_list<const char*> opt
 }  // namespace
 
 int runChapter(const Chapter& chapter, int argc, char** argv) {
+  leaveWordsAtCrash(chapter.name);
   return guarded([&] {
     CLI::App program(chapter.title, chapter.name);
     program.set_version_flag("--version", version());
