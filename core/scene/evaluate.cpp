@@ -4,6 +4,8 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <iterator>
+#include <string_view>
 
 #include "core/base/error.h"
 #include "core/scene/normal_matrix.h"
@@ -169,23 +171,21 @@ void addInstances(const Scene& scene, const Animation* animation, double time, P
   for (std::size_t n = 0; n < scene.nodes.size(); ++n) {
     const Node& node = scene.nodes[n];
     if (node.mesh == kNone) continue;
-    const int firstDeformed = deformed.count();
+    const std::size_t primitives = scene.meshes[at(node.mesh)].primitives.size();
+    const std::size_t firstInstance = pose.instances.size();
     const std::size_t copies = std::max<std::size_t>(1, node.instances.size());
     for (std::size_t copy = 0; copy < copies; ++copy) {
       const glm::mat4 world =
           node.instances.empty() ? pose.nodeToWorld[n] : inWorld(pose, n, node.instances[copy].matrix());
-      int known = firstDeformed;  // copies share their node's morph state
-      for (std::size_t p = 0; p < scene.meshes[at(node.mesh)].primitives.size(); ++p) {
+      for (std::size_t p = 0; p < primitives; ++p) {
         DrawInstance instance;
         instance.node = static_cast<int>(n);
         instance.mesh = node.mesh;
         instance.primitive = static_cast<int>(p);
-        if (copy == 0) {
-          instance.deformed =
-              addDeformation(scene, animation, time, instance.node, instance.primitive, pose, deformed);
-        } else if (!scene.meshes[at(node.mesh)].primitives[p].morphTargets.empty()) {
-          instance.deformed = known++;
-        }
+        // Copies share their node's skin and morph state.
+        instance.deformed = copy > 0 ? pose.instances[firstInstance + p].deformed
+                                     : addDeformation(scene, animation, time, instance.node,
+                                                      instance.primitive, pose, deformed);
         const bool skinned =
             instance.deformed != kNone && !pose.deformed[at(instance.deformed)].joints.empty();
         instance.objectToWorld = skinned ? glm::mat4(1) : world;
@@ -211,6 +211,12 @@ void check(const Scene::Dynamic& dynamic, const Primitive& primitive) {
     fail(fmt::format("{} indices, which is no multiple of 3", primitive.indices.size()));
   if (primitive.normals.size() != vertices)
     fail(fmt::format("{} normals for {} positions", primitive.normals.size(), vertices));
+  const auto perVertex = [&](std::size_t count, const char* what) {
+    if (count != 0 && count != vertices) fail(fmt::format("{} {} for {} positions", count, what, vertices));
+  };
+  perVertex(primitive.tangents.size(), "tangents");
+  perVertex(primitive.uvs.size(), "texture coordinates");
+  perVertex(primitive.colours.size(), "colours");
   for (const std::uint32_t index : primitive.indices)
     if (index >= vertices) fail(fmt::format("index {} of {} positions", index, vertices));
   for (const glm::vec3& p : primitive.positions)
@@ -248,17 +254,26 @@ void addCameras(const Scene& scene, Pose& pose) {
 void addLights(const Scene& scene, Pose& pose) {
   Refill<std::string> names(pose.lightNames);
   pose.lights.clear();
-  std::string name;
-  const auto add = [&](glsl::Light light, const std::string& first, const std::string& second) {
+  // Names are written where they stay, so that no frame takes memory for them.
+  const auto add = [&](glsl::Light light) -> std::string& {
     light.index = static_cast<uint32_t>(pose.lights.size());
-    setName(names.next(), first, second, static_cast<int>(pose.lights.size()));
     pose.lights.push_back(light);
+    return names.next();
+  };
+  const auto addNamed = [&](const glsl::Light& light, const std::string& first, const std::string& second) {
+    std::string& name = add(light);
+    setName(name, first, second, names.count() - 1);
+  };
+  const auto addNumbered = [&](const glsl::Light& light, std::string_view of, std::size_t number) {
+    std::string& name = add(light);
+    name.clear();
+    fmt::format_to(std::back_inserter(name), "{}#{}", of, number);
   };
   for (std::size_t n = 0; n < scene.nodes.size(); ++n) {
     const Node& node = scene.nodes[n];
     if (node.light == kNone) continue;
     const LightSource& source = scene.lights[at(node.light)];
-    add(punctualLight(source, node.limnArea, pose.nodeToWorld[n]), node.name, source.name);
+    addNamed(punctualLight(source, node.limnArea, pose.nodeToWorld[n]), node.name, source.name);
   }
   for (std::size_t i = 0; i < pose.instances.size(); ++i) {
     const DrawInstance& instance = pose.instances[i];
@@ -270,20 +285,14 @@ void addLights(const Scene& scene, Pose& pose) {
                                    instance.objectToWorld, static_cast<uint32_t>(i));
       if (!light) continue;
       const std::string& given = scene.nodes[at(instance.node)].name;
-      if (primitive.emissiveParts.size() == 1) {
-        add(*light, given, mesh.name);
-        continue;
-      }
-      name.clear();
-      fmt::format_to(std::back_inserter(name), "{}#{}", given.empty() ? mesh.name : given, k);
-      add(*light, name, {});
+      if (primitive.emissiveParts.size() == 1)
+        addNamed(*light, given, mesh.name);
+      else
+        addNumbered(*light, given.empty() ? mesh.name : given, k);
     }
   }
-  for (std::size_t i = 0; i < scene.environment.lights.size(); ++i) {
-    name.clear();
-    fmt::format_to(std::back_inserter(name), "env#{}", i);
-    add(distantLight(scene.environment.lights[i], scene.environment), name, {});
-  }
+  for (std::size_t i = 0; i < scene.environment.lights.size(); ++i)
+    addNumbered(distantLight(scene.environment.lights[i], scene.environment), "env", i);
 }
 
 }  // namespace

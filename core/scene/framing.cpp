@@ -85,11 +85,12 @@ CameraPose Framing::camera() const {
 
 CameraPose frameScene(const Scene& scene, int animation) {
   Framing framing;
-  const int played = scene.animations.empty() ? kNone : std::max(animation, 0);
-  const int times = played == kNone ? 1 : kTimes;
+  const auto played = static_cast<std::size_t>(std::max(animation, 0));
+  const bool moves = played < scene.animations.size();  // evaluate() refuses what does not exist
+  const int times = moves ? kTimes : 1;
+  const double duration = moves ? scene.animations[played].duration : 0;
   Pose pose;
   for (int i = 0; i < times; ++i) {
-    const double duration = played == kNone ? 0 : scene.animations[static_cast<std::size_t>(played)].duration;
     evaluate(scene, duration * i / times, animation, pose);
     visitVertices(scene, pose, [&](const glm::vec3& point) { framing.add(point); });
   }

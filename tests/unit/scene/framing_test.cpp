@@ -4,8 +4,10 @@
 #include <gtest/gtest.h>
 
 #include <algorithm>
+#include <limits>
 #include <vector>
 
+#include "core/base/error.h"
 #include "core/scene/camera.h"
 #include "core/scene/floor.h"
 
@@ -89,6 +91,11 @@ TEST(Framing, SeesWhereAnAnimationGoes) {
   const Bounds seen = inPicture(camera, {{-1, 0, 0}, {9, 0, 0}});
   EXPECT_GT(seen.low.x, -1);
   EXPECT_LT(seen.high.x, 1);
+}
+
+TEST(Framing, RefusesAnimationsThatDoNotExist) {
+  EXPECT_THROW(frameScene(movingScene(), std::numeric_limits<int>::max()), UsageError);
+  EXPECT_THROW(frameScene(Scene{}, 0), UsageError);
 }
 
 TEST(Floor, LiesJustBelowAndIsDiffuse) {

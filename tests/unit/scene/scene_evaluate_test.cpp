@@ -222,6 +222,32 @@ TEST(SceneEvaluate, Instances) {
   expectNear(pose.bounds.high, {10, 2, 0});
 }
 
+/// The first primitive follows the skin alone, the second one morph targets alone.
+TEST(SceneEvaluate, CopiesDeformAsTheirNodeDoes) {
+  Scene scene = loadBuilt(skinned());
+  std::vector<scene::Primitive>& primitives = scene.meshes[0].primitives;
+  scene::Primitive morphed = primitives[0];
+  morphed.joints.clear();
+  morphed.weights.clear();
+  morphed.jointBounds.clear();
+  morphed.morphTargets.resize(1);
+  primitives.push_back(std::move(morphed));
+  scene.meshes[0].morphWeights = {0.5f};
+  for (scene::Node& node : scene.nodes)
+    if (node.mesh != kNone) node.instances = {{}, {.translation = {7, 0, 0}}};
+  const Pose pose = evaluate(scene, 0);
+  ASSERT_EQ(pose.instances.size(), 4u);
+  EXPECT_EQ(pose.deformed.size(), 2u);
+  for (const scene::DrawInstance& instance : pose.instances) {
+    ASSERT_NE(instance.deformed, kNone);
+    const scene::Deformation& state = pose.deformed.at(static_cast<std::size_t>(instance.deformed));
+    EXPECT_EQ(state.primitive, instance.primitive);
+    EXPECT_EQ(state.joints.empty(), instance.primitive == 1);
+  }
+  EXPECT_EQ(pose.instances[2].objectToWorld, glm::mat4(1)) << "a skin decides on the place";
+  expectNear(pose.instances[3].objectToWorld[3], {107, 0, 0});
+}
+
 TEST(SceneEvaluate, Lights) {
   GltfBuilder b;
   const double s = std::sqrt(0.5);
@@ -371,10 +397,13 @@ class Growing : public scene::GeometrySource {
     made->positions = {glm::vec3(-1), glm::vec3(static_cast<float>(time)), glm::vec3(0)};
     made->normals.assign(normals, glm::vec3(0, 0, 1));
     made->indices = {0, 1, last};
+    made->tangents.resize(tangents);
+    made->uvs.resize(uvs);
+    made->colours.resize(colours);
     return made;
   }
   uint32_t last = 2;
-  size_t normals = 3;
+  size_t normals = 3, tangents = 0, uvs = 0, colours = 0;
 };
 
 TEST(SceneEvaluate, DynamicGeometryComesLast) {
@@ -395,6 +424,14 @@ TEST(SceneEvaluate, DynamicGeometryComesLast) {
   source->last = 2;
   source->normals = 2;
   EXPECT_THROW(evaluate(scene, 7), Error);
+  source->normals = 3;
+  for (size_t Growing::*count : {&Growing::tangents, &Growing::uvs, &Growing::colours}) {
+    (*source).*count = 3;
+    EXPECT_NO_THROW(evaluate(scene, 7));
+    (*source).*count = 2;
+    EXPECT_THROW(evaluate(scene, 7), Error) << "one for each vertex, or none";
+    (*source).*count = 0;
+  }
 }
 
 TEST(SceneEvaluate, PoseFollowsAnotherScene) {
