@@ -91,8 +91,11 @@ class SourceFile {
  public:
   explicit SourceFile(const std::filesystem::path& path) : path_(path) {
     std::error_code error;
-    if (!std::filesystem::exists(path, error)) throw Error(fmt::format("{}: no such file", path.string()));
-    if (!std::filesystem::is_regular_file(path, error))
+    const std::filesystem::file_status status = std::filesystem::status(path, error);
+    // It may be there: a folder above it may not be searched, a link may lead to itself.
+    if (!std::filesystem::status_known(status)) failRead(path, error.value());
+    if (!std::filesystem::exists(status)) throw Error(fmt::format("{}: no such file", path.string()));
+    if (!std::filesystem::is_regular_file(status))
       throw Error(fmt::format("{}: not a regular file", path.string()));
     file_ = ::open(path.c_str(), O_RDONLY | O_CLOEXEC);
     if (file_ < 0) failRead(path, errno);
@@ -235,7 +238,10 @@ void removeAbandonedFiles(const std::filesystem::path& folder) {
 
 std::filesystem::path fileInFolder(const std::filesystem::path& folder, const std::string& file) {
   std::error_code error;
-  const std::filesystem::path root = std::filesystem::weakly_canonical(folder, error);
+  // Nothing is outside of an empty path, which names the current folder.
+  const std::filesystem::path root =
+      std::filesystem::weakly_canonical(folder.empty() ? std::filesystem::path(".") : folder, error);
+  if (error) return {};
   const std::filesystem::path path = std::filesystem::weakly_canonical(folder / file, error);
   if (file.empty() || error || !std::filesystem::is_regular_file(path, error)) return {};
   const auto [end, ignored] = std::mismatch(root.begin(), root.end(), path.begin(), path.end());

@@ -164,7 +164,7 @@ std::vector<std::string> Context::takeErrors() {
 }
 
 void Context::throwErrors() {
-  for (const std::string& error : takeErrors()) throw Error("OpenGL: " + error);
+  for (const std::string& error : takeErrors()) throw Error(error);
 }
 
 ContextScope::ContextScope(Context* context) : previous_(currentContext), context_(context) {
@@ -176,7 +176,7 @@ ContextScope::ContextScope(Context* context) : previous_(currentContext), contex
 }
 
 ContextScope::~ContextScope() {
-  if (previous_ == context_) return;
+  if (previous_ == context_ && currentContext == context_) return;  // nor was another made current meanwhile
   Context::release();
   if (previous_ != nullptr) previous_->makeCurrent();
 }

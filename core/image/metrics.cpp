@@ -41,7 +41,8 @@ std::vector<float> finiteRgb(const Image& image, const char* role) {
                                 static_cast<std::size_t>(x))];
       for (std::size_t c = 0; c < 3; ++c) {
         out[c] = pixel[static_cast<std::size_t>(rgb[c])];
-        bad += std::isfinite(out[c]) ? 0 : 1;
+        const bool counted = c > 0 && rgb[c] == rgb[0];  // of a picture with a single channel
+        bad += std::isfinite(out[c]) || counted ? 0 : 1;
       }
     }
     return bad;
@@ -114,7 +115,8 @@ class SurfaceMask {
   bool sameDepth(int x, int y) const {
     if (!depth_[0] || !depth_[1]) return true;
     const double z = depth_[0].at(x, y), r = depth_[1].at(x, y);
-    return z == r || std::abs(z - r) <= depthTolerance_ * std::abs(r);  // false for NaN
+    // False for NaN, and where one depth is infinite (no surface): the tolerance would be infinite, too.
+    return z == r || (std::isfinite(r) && std::abs(z - r) <= depthTolerance_ * std::abs(r));
   }
 
   std::array<OptionalChannel, 2> coverage_, undefined_, id_, depth_;

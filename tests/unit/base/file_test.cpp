@@ -8,7 +8,9 @@
 #include <sys/wait.h>
 #include <unistd.h>
 
+#include <cerrno>
 #include <cstdint>
+#include <cstring>
 #include <filesystem>
 #include <fstream>
 #include <string>
@@ -78,6 +80,23 @@ TEST_F(FileTest, LinesAreReadOneByOne) {
   EXPECT_THROW(readLines(folder_ / "a", ignore, 4), Error);
   EXPECT_THROW(readLines(folder_ / "missing", ignore), Error);
   EXPECT_THROW(readLines(folder_, ignore), Error);
+}
+
+TEST_F(FileTest, WhyAFileCannotBeReadIsSaid) {
+  const auto problem = [](const fs::path& path) -> std::string {
+    try {
+      readFile(path);
+    } catch (const Error& error) {
+      return error.what();
+    }
+    return {};
+  };
+  fs::create_symlink("loop", folder_ / "loop");
+  const fs::path loop = folder_ / "loop", longer = folder_ / std::string(300, 'n');
+  EXPECT_EQ(problem(loop), loop.string() + ": cannot be read: " + std::strerror(ELOOP));
+  EXPECT_EQ(problem(longer), longer.string() + ": cannot be read: " + std::strerror(ENAMETOOLONG));
+  EXPECT_EQ(problem(folder_ / "missing"), (folder_ / "missing").string() + ": no such file");
+  EXPECT_EQ(problem(folder_), folder_.string() + ": not a regular file");
 }
 
 TEST_F(FileTest, LeftoversOfAnotherProcessOfTheSameNumberDisturbNobody) {
@@ -199,6 +218,7 @@ TEST_F(FileTest, NamesOfAFolderDoNotLeadOutOfIt) {
   for (const char* name : {"", ".", "pictures", "missing", "../secret", "pictures/../../secret", "out"})
     EXPECT_EQ(fileInFolder(root, name), fs::path()) << name;
   EXPECT_EQ(fileInFolder(root, (folder_ / "secret").string()), fs::path());
+  EXPECT_EQ(fileInFolder("", (folder_ / "secret").string()), fs::path()) << "it is not in the current folder";
 }
 
 TEST_F(FileTest, WhereNoLockCanBeMadeNothingIsGuarded) {

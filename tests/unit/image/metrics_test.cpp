@@ -170,6 +170,25 @@ TEST(Metrics, BackgroundIsDroppedButNotCounted) {
   EXPECT_EQ(compareImages(image.select({"R", "G", "B"}), reference).pixels, 90u);
 }
 
+/// Pictures of other programs may have no channel for the coverage, and an infinite depth in its place.
+TEST(Metrics, AnInfiniteDepthIsThatOfNoSurface) {
+  Image reference = filled(10, 10, 0.5f);
+  reference.addChannel("Z", std::vector<float>(reference.pixelCount(), 10.0f));
+  Image image = reference;
+  const int depth = image.channel("Z");
+  for (Image* picture : {&reference, &image})
+    picture->at(0, 0, depth) = std::numeric_limits<float>::infinity();
+  reference.at(1, 0, depth) = std::numeric_limits<float>::infinity();
+  image.at(2, 0, depth) = std::numeric_limits<float>::infinity();
+  for (int x = 1; x < 3; ++x) image.at(x, 0, 0) = 100.0f;
+  CompareOptions silhouettes;
+  silhouettes.maxMaskedShare = 0.05;
+  const Metrics metrics = compareImages(image, reference, silhouettes);
+  EXPECT_EQ(metrics.pixels, 98u) << "without those where one picture alone sees a surface";
+  EXPECT_NEAR(metrics.masked_share, 0.02, 1e-12);
+  EXPECT_EQ(metrics.rmse, 0.0);
+}
+
 TEST(Metrics, PixelsWithoutAnAnswerAreDropped) {
   Image reference = filled(10, 10, 0.5f), image = reference;
   reference.addChannel("masked");
@@ -217,6 +236,9 @@ TEST(Metrics, RefusesNanInfinityAndOtherSizes) {
     expectError([&] { compareImages(broken, good); },
                 "the image has 1 values that are not finite, the first at pixel (3, 5)");
     expectError([&] { compareImages(good, broken); }, "the reference has 1");
+    Image grey(8, 6, {"Y"});
+    grey.at(3, 5, 0) = bad;
+    expectError([&] { compareImages(grey, good); }, "the image has 1 values");
   }
   expectError([&] { compareImages(good, filled(6, 8, 1.0f)); }, "8x6");
   expectError([&] { compareImages(good, Image(8, 6, {"Z", "id"})); }, "R, G, B");
