@@ -3,6 +3,7 @@
 #pragma once
 
 #include <cmath>
+#include <limits>
 #include <string>
 #include <utility>
 #include <vector>
@@ -87,7 +88,9 @@ class SubsurfaceSpreadTest : public TwoBodiesTest {
           EXPECT_EQ(seen, 0);
           continue;
         }
-        largest = std::max(largest, std::abs(seen / wanted - 1));
+        const double difference = std::abs(seen / wanted - 1);
+        if (std::isnan(difference)) return std::numeric_limits<double>::infinity();
+        largest = std::max(largest, difference);
         ++counted;
       }
     EXPECT_GT(counted, 1500);

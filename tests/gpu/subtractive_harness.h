@@ -3,6 +3,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
 #include <string>
 #include <utility>
 #include <vector>
@@ -104,8 +105,11 @@ class SubtractiveShadowsTest : public EnvironmentTest {
 
   static double largestDifference(const Image& a, const Image& b) {
     double largest = 0;
-    for (size_t i = 0; i < a.data().size(); ++i)
-      largest = std::max(largest, static_cast<double>(std::abs(a.data()[i] - b.data()[i])));
+    for (size_t i = 0; i < a.data().size(); ++i) {
+      const auto difference = static_cast<double>(std::abs(a.data()[i] - b.data()[i]));
+      if (std::isnan(difference)) return std::numeric_limits<double>::infinity();
+      largest = std::max(largest, difference);
+    }
     return largest;
   }
   static double largest(const Image& image) {

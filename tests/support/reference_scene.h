@@ -4,9 +4,11 @@
 #include <unistd.h>
 
 #include <algorithm>
+#include <cmath>
 #include <filesystem>
 #include <glm/glm.hpp>
 #include <glm/gtc/matrix_transform.hpp>
+#include <limits>
 #include <string>
 #include <vector>
 
@@ -212,14 +214,16 @@ double meanRelativeError(const World& world, const Image& image, const char* cha
   return total > 0 ? error / total : error;
 }
 
-/// Largest difference of two pictures' channel over the mean of the first.
+/// Largest difference of two pictures' channel over the mean of the first; infinite where one is NaN.
 inline double largestDifference(const Image& a, const Image& b, const char* channel) {
   double largest = 0, sum = 0;
   const int c = a.channel(channel);
   for (int y = 0; y < a.height(); ++y)
     for (int x = 0; x < a.width(); ++x) {
-      largest = std::max(largest,
-                         std::abs(static_cast<double>(a.at(x, y, c)) - static_cast<double>(b.at(x, y, c))));
+      const double difference =
+          std::abs(static_cast<double>(a.at(x, y, c)) - static_cast<double>(b.at(x, y, c)));
+      if (std::isnan(difference)) return std::numeric_limits<double>::infinity();
+      largest = std::max(largest, difference);
       sum += std::abs(static_cast<double>(a.at(x, y, c)));
     }
   return largest / std::max(sum / static_cast<double>(a.pixelCount()), 1e-300);

@@ -96,6 +96,17 @@ TEST(ReferenceGeometry, CopiesWithoutAnInverseEqualMeshesOfTheirOwn) {
   }
 }
 
+/// What is not a number is no small difference, in whichever picture it is.
+TEST(ReferenceGeometry, TheDifferenceOfPicturesThatAreNotNumbersIsLarge) {
+  Image sound(2, 1, {"R"});
+  sound.at(0, 0, 0) = 1;
+  Image broken = sound;
+  broken.at(1, 0, 0) = std::nanf("");
+  EXPECT_EQ(largestDifference(sound, sound, "R"), 0);
+  EXPECT_FALSE(largestDifference(sound, broken, "R") < 1e300);
+  EXPECT_FALSE(largestDifference(broken, sound, "R") < 1e300);
+}
+
 TEST(ReferenceGeometry, RaysFromBeyondAllScenesMeetNothing) {
   World world = floorWorld();
   world.camera = scene::lookAt({0, 1e19f, 1}, {0, 0, 0}, 0.8f);
