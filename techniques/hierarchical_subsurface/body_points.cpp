@@ -1,9 +1,12 @@
 #include "techniques/hierarchical_subsurface/body_points.h"
 
+#include <fmt/format.h>
+
 #include <algorithm>
 #include <cmath>
 #include <limits>
 
+#include "core/base/error.h"
 #include "core/scene/draw_instance.h"
 #include "core/scene/normal_matrix.h"
 #include "core/scene/subsurface.h"
@@ -38,14 +41,26 @@ std::optional<glm::dmat4> inverseOf(const glm::mat4& matrix) {
 
 }  // namespace
 
-BodyPoints::BodyPoints(const scene::Scene& scene, const scene::Pose& pose, int count)
+BodyPoints::BodyPoints(const scene::Scene& scene, const scene::Pose& pose, int count, int64_t mostBytes)
     : scene_(scene), drawCount_(pose.instances.size()), bodies_(std::max<size_t>(drawCount_, 1)) {
+  const auto check = [&](size_t nodes) {
+    const size_t bytes = nodes * sizeof(glsl::ScatterNode);
+    if (bytes > static_cast<size_t>(mostBytes))
+      throw UsageError(fmt::format(
+          "hierarchical_subsurface: {} or more points and clusters take {} MiB; a storage block holds {}",
+          nodes, bytes >> 20, mostBytes >> 20));
+  };
+  size_t slots = 0;
   for (uint32_t draw = 0; draw < drawCount_; ++draw)
-    if (scene::materialOf(scene, pose.instances[draw]).subsurface)
+    if (scene::materialOf(scene, pose.instances[draw]).subsurface) {
       parts_.push_back(makeBody(draw, pose, count));
+      slots += parts_.back().elements->forest().leafSlots();
+      check(slots);  // before all other bodies have taken their memory
+    }
   std::vector<const radiosity::Forest*> forests;
   for (const Body& body : parts_) forests.push_back(&body.elements->forest());
   tree_ = WalkTree(forests);
+  check(tree_.nodes().size());
   points_.resize(
       tree_.leafCount(),
       {.position = glm::vec3(0), .instance = glsl::no_instance, .normal = glm::vec3(0), .reach = 0});

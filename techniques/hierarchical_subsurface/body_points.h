@@ -1,6 +1,7 @@
 // Declares the points of the translucent bodies of a scene: what moves them, lights them and walks over them.
 #pragma once
 
+#include <cstdint>
 #include <glm/glm.hpp>
 #include <memory>
 #include <optional>
@@ -19,8 +20,9 @@ namespace limn::hierarchical_subsurface {
 class BodyPoints {
  public:
   /// Makes about `count` points for each body, which are the vertices of its mesh after long edges have been
-  /// halved: bodies with more vertices have more.
-  BodyPoints(const scene::Scene& scene, const scene::Pose& pose, int count);
+  /// halved: bodies with more vertices have more. Throws UsageError as soon as their nodes take more than
+  /// `mostBytes`.
+  BodyPoints(const scene::Scene& scene, const scene::Pose& pose, int count, int64_t mostBytes);
 
   /// Returns whether `pose` differs only in where vertices are, as SceneElements has it.
   bool fits(const scene::Pose& pose) const;

@@ -1,11 +1,8 @@
 // Light below surfaces from points all over each translucent body, far ones in clusters.
-#include <fmt/format.h>
-
 #include <map>
 #include <optional>
 #include <string>
 
-#include "core/base/error.h"
 #include "core/gpu_scene/gpu_scene.h"
 #include "core/shadow/entering_light.h"
 #include "core/shadow/visibility_pass.h"
@@ -56,7 +53,8 @@ class HierarchicalSubsurface : public Technique {
  private:
   frame::TextureHandle addPasses(frame::FrameGraph& graph, const TechniqueInputs& inputs,
                                  const TermRequest& request) override {
-    points_.emplace(inputs.scene, inputs.pose, inputs.parameters.integer("points"));
+    points_.emplace(inputs.scene, inputs.pose, inputs.parameters.integer("points"),
+                    inputs.gpuScene.device().limits().maxStorageBlockBytes);
     if (points_->empty()) {
       graph.leaveOut("light below surfaces", info.name, "no surface is translucent");
       return request.target;
@@ -70,10 +68,6 @@ class HierarchicalSubsurface : public Technique {
 
   void createBuffers(gpu::Device& device) {
     const auto nodes = points_->tree().nodes();
-    if (nodes.size_bytes() > static_cast<size_t>(device.limits().maxStorageBlockBytes))
-      throw UsageError(
-          fmt::format("hierarchical_subsurface: {} points and clusters take {} MiB; a storage block holds {}",
-                      nodes.size(), nodes.size_bytes() >> 20, device.limits().maxStorageBlockBytes >> 20));
     bodyBuffer_ = gpu::Buffer::of(device, "translucent bodies", points_->bodies(), gpu::BufferUse::updated);
     pointBuffer_ = gpu::Buffer::of(device, "points of bodies", points_->points(), gpu::BufferUse::updated);
     nodeBuffer_ = gpu::Buffer::of(device, "clusters of points", nodes, gpu::BufferUse::updated);

@@ -4,7 +4,9 @@
 
 #include <algorithm>
 #include <cmath>
+#include <map>
 #include <span>
+#include <utility>
 
 #include "core/base/error.h"
 #include "core/scene/diffusion_profile.h"
@@ -92,16 +94,23 @@ Bodies findBodies(const scene::Scene& scene, const scene::Pose& pose, const Draw
                   int64_t maxStorageBlockBytes) {
   Bodies result;
   result.ofInstances.assign(pose.instances.size(), glsl::no_body);
+  std::map<std::pair<int, bool>, uint32_t> ofMaterials;  // with and without colours of their own
   for (size_t i = 0; i < pose.instances.size(); ++i) {
     const scene::DrawInstance& instance = pose.instances[i];
     const scene::Material& material = scene::materialOf(scene, instance);
     if (!material.subsurface) continue;
-    const scene::Primitive& primitive = scene::primitiveOf(scene, pose, instance);
-    const DiffusionBody body = makeBody(scene, material, isTextured(material, primitive), drawing);
-    const auto known =
-        std::ranges::find_if(result.bodies, [&](const DiffusionBody& other) { return alike(other, body); });
-    result.ofInstances[i] = static_cast<uint32_t>(known - result.bodies.begin());
-    if (known == result.bodies.end()) result.bodies.push_back(body);
+    const bool textured = isTextured(material, scene::primitiveOf(scene, pose, instance));
+    // Copies share a body: a textured one asks for all texels of its image.
+    const auto [made, isNew] =
+        ofMaterials.try_emplace({scene::materialIndexOf(scene, instance), textured}, glsl::no_body);
+    if (isNew) {
+      const DiffusionBody body = makeBody(scene, material, textured, drawing);
+      const auto known =
+          std::ranges::find_if(result.bodies, [&](const DiffusionBody& other) { return alike(other, body); });
+      made->second = static_cast<uint32_t>(known - result.bodies.begin());
+      if (known == result.bodies.end()) result.bodies.push_back(body);
+    }
+    result.ofInstances[i] = made->second;
   }
   checkPoints(result.bodies, drawing, maxStorageBlockBytes);
   bool textures = false;
