@@ -57,9 +57,9 @@ constexpr Parameter kParameters[] = {
 };
 constexpr StressCase kStress[] = {
     {.name = "tables of 2 texels", .settings = "texels=2", .factor = 0},
-    {.name = "published coordinates", .settings = "coordinates=published", .factor = 100},
-    {.name = "8 bits", .settings = "format=byte", .factor = 100},
-    {.name = "Schlick's reflectance", .settings = "fresnel=schlick", .factor = 100},
+    {.name = "published coordinates", .settings = "coordinates=published"},
+    {.name = "8 bits", .settings = "format=byte"},
+    {.name = "Schlick's reflectance", .settings = "fresnel=schlick"},
     {.name = "dfg of 2 texels", .scene = "torus_metal", .settings = "fit=dfg fit_texels=2", .factor = 0},
     {.name = "svd of 2 texels", .scene = "torus_metal", .settings = "fit=svd fit_texels=2", .factor = 0},
     {.name = "volumes of 2 texels",
@@ -73,7 +73,7 @@ constexpr StressCase kStress[] = {
     {.name = "published coordinates of slopes",
      .scene = "disk_and_sphere",
      .settings = "coordinates=published"},
-    {.name = "fits of other models", .scene = "disk_and_sphere", .settings = "fit=pqp_disc", .factor = 100},
+    {.name = "fits of other models", .scene = "disk_and_sphere", .settings = "fit=pqp_disc", .factor = 5},
     {.name = "two products over discs of 2 texels",
      .scene = "disk_and_sphere",
      .settings = "fit=dfg_disc terms=2 fit_texels=2",
