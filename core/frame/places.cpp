@@ -66,6 +66,12 @@ void placeSampler(const gl::Functions& gl, GLuint unit, GLuint texture, const gp
   gl.BindSampler(unit, sampler != nullptr ? sampler->id() : 0);
 }
 
+/// Returns the bytes to bind of a whole buffer. Uniform blocks may state more than it holds, so they get its
+/// room as well (0); of storage blocks length() of an unsized array counts what was asked for.
+size_t wholeBytes(Kind kind, size_t bytes) {
+  return kind == Kind::storageBlock ? bytes : 0;
+}
+
 void placeBlock(const gl::Functions& gl, Kind kind, GLuint unit, GLuint buffer, size_t offset, size_t bytes) {
   const GLenum target = kind == Kind::uniformBlock ? GL_UNIFORM_BUFFER : GL_SHADER_STORAGE_BUFFER;
   if (bytes == 0) {
@@ -80,7 +86,10 @@ void bindPlace(Graph& graph, const Pass& pass, const Place& place) {
   const NamedResource& named = pass.names[place.name];
   if (named.slot()) return;
   if (named.texture != nullptr) return placeSampler(gl, place.unit, named.texture->id(), named.sampler);
-  if (named.buffer != nullptr) return placeBlock(gl, place.kind, place.unit, named.buffer->id(), 0, 0);
+  if (named.buffer != nullptr) {
+    return placeBlock(gl, place.kind, place.unit, named.buffer->id(), 0,
+                      wholeBytes(place.kind, named.buffer->size()));
+  }
   const ResourceAccess& access = pass.accesses[named.access];
   const Resource& resource = graph.resources[access.resource];
   switch (place.kind) {
@@ -89,11 +98,11 @@ void bindPlace(Graph& graph, const Pass& pass, const Place& place) {
     case Kind::image:
       return placeImage(gl, place.unit, resource, access.access, named.level, named.layer);
     case Kind::uniformBlock:
-      return placeBlock(gl, place.kind, place.unit, resource.id(), 0, 0);
-    case Kind::storageBlock:
-      // The declared size, not the pool's: length() of an unsized array in a shader counts what was asked
-      // for.
-      return placeBlock(gl, place.kind, place.unit, resource.id(), 0, resource.bufferDesc.bytes);
+    case Kind::storageBlock: {
+      const gpu::Buffer* imported = resource.importedBuffer;  // else the declared size, not the pool's
+      return placeBlock(gl, place.kind, place.unit, resource.id(), 0,
+                        wholeBytes(place.kind, imported ? imported->size() : resource.bufferDesc.bytes));
+    }
   }
 }
 
@@ -218,6 +227,7 @@ void PassContext::bind(SlotHandle slot, const gpu::Buffer& buffer, size_t offset
   Place* place = placeOf(*graph_.implementation_, slot);
   if (place == nullptr) return;
   place->slot = {.buffer = &buffer, .offset = offset, .bytes = bytes};
+  if (bytes == 0) bytes = wholeBytes(place->kind, buffer.size());
   placeBlock(gl(), place->kind, place->unit, buffer.id(), offset, bytes);
 }
 

@@ -1,6 +1,10 @@
 #include <fmt/format.h>
 
+#include <algorithm>
+#include <bit>
+#include <cstring>
 #include <limits>
+#include <vector>
 
 #include "core/base/error.h"
 #include "core/gpu/objects.h"
@@ -15,7 +19,7 @@ constexpr ObjectKind kBufferKind{[](const gl::Functions& gl, GLuint id) { gl.Del
                                  &Counters::buffers, &Counters::bufferBytes};
 
 size_t storageBytes(size_t bytes) {
-  return bytes == 0 ? kMinimumBytes : bytes;
+  return bytes == 0 ? kMinimumBytes : blockRoom(bytes);
 }
 
 void checkRange(const char* what, size_t offset, size_t bytes, size_t size) {
@@ -27,16 +31,27 @@ void checkRange(const char* what, size_t offset, size_t bytes, size_t size) {
 
 }  // namespace
 
+size_t blockRoom(size_t bytes) {
+  constexpr size_t kLeast = 4096, kMost = 65536;  // a page; what most devices take in a uniform block
+  return bytes > kMost ? bytes : std::bit_ceil(std::max(bytes, kLeast));
+}
+
 Buffer::Buffer(Device& device, std::string_view label, size_t bytes, BufferUse use, const void* data)
     : Object(device, kBufferKind), bytes_(bytes), use_(use) {
   if (bytes > static_cast<size_t>(std::numeric_limits<GLsizeiptr>::max())) {
     throw Error(fmt::format("buffer '{}' of {} bytes is larger than memory can be", label, bytes));
   }
   const gl::Functions& gl = device.gl();
-  const auto storage = static_cast<GLsizeiptr>(storageBytes(bytes));
+  const size_t storage = storageBytes(bytes);
+  std::vector<std::byte> padded;
+  if (data != nullptr && storage != bytes) {
+    padded.resize(storage);
+    std::memcpy(padded.data(), data, bytes);
+    data = padded.data();
+  }
   gl.CreateBuffers(1, &id_);
-  count(storage);
-  gl.NamedBufferStorage(id_, storage, bytes == 0 ? nullptr : data,
+  count(static_cast<int64_t>(bytes == 0 ? kMinimumBytes : bytes));
+  gl.NamedBufferStorage(id_, static_cast<GLsizeiptr>(storage), data,
                         use == BufferUse::updated ? GL_DYNAMIC_STORAGE_BIT : 0);
   if (outOfMemory(gl))
     throw Error(fmt::format("out of GPU memory for buffer '{}' of {} bytes", label, bytes));

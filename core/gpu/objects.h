@@ -54,11 +54,16 @@ enum class BufferUse {
   updated,  ///< rewritten from the CPU with update(), before the frames that read it
 };
 
+/// Returns how many bytes a buffer of `bytes`, more than 0, has room for: up to 64 KiB a power of two, 4 KiB
+/// at least. Programs may therefore state a rounded length of the arrays in their uniform blocks, so that one
+/// program serves arrays of several lengths.
+LIMN_API size_t blockRoom(size_t bytes);
+
 class LIMN_API Buffer : public Object {
  public:
   Buffer() = default;
-  /// Creates a buffer. `bytes` may be 0 (then 16 bytes are allocated, so that the buffer can be bound, and
-  /// size() is 0). Throws Error when out of memory.
+  /// Creates a buffer with room for blockRoom(bytes). `bytes` may be 0 (then 16 bytes are allocated, so that
+  /// the buffer can be bound, and size() is 0). Throws Error when out of memory.
   Buffer(Device& device, std::string_view label, size_t bytes, BufferUse use = BufferUse::fixed,
          const void* data = nullptr);
 

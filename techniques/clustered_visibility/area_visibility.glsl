@@ -16,11 +16,14 @@ uniform sampler2DArray area_depth_bounds;  // MinMaxPyramid
 uniform sampler2DArray area_depths;
 uniform float contact_texels;
 #endif
-#ifdef AREA_COUNT  // they fit uniform blocks, from which all invocations load at once
-layout(std140) uniform AreaViews { ShadowView area_views[AREA_COUNT]; };
-layout(std140) uniform AreaLights { VirtualAreaLight area_lights[AREA_COUNT]; };
+#ifdef AREA_VIEW_COUNT  // they fit a uniform block, from which all invocations load at once
+layout(std140) uniform AreaViews { ShadowView area_views[AREA_VIEW_COUNT]; };
 #else
 layout(std430) readonly buffer AreaViews { ShadowView area_views[]; };
+#endif
+#ifdef AREA_COUNT  // likewise
+layout(std140) uniform AreaLights { VirtualAreaLight area_lights[AREA_COUNT]; };
+#else
 layout(std430) readonly buffer AreaLights { VirtualAreaLight area_lights[]; };
 #endif
 uniform float bias;    // texel footprints

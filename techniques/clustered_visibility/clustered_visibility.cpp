@@ -174,14 +174,15 @@ class ClusteredVisibility : public Technique {
     if (contact > 0) pass.sampled.push_back({"area_depths", maps.depth, "blockers just before the receiver"});
     if (p.choice("search") == 1)
       pass.sampled.push_back({"area_depth_bounds", pyramid.texture, "nearest depths"});
-    // One length for both blocks, chosen by the larger of them.
-    static_assert(sizeof(glsl::VirtualAreaLight) <= sizeof(glsl::ShadowView));
-    const Access access =
-        frame::arrayBlock<glsl::ShadowView>(device.limits(), areas.count, "AREA_COUNT", pass.program.defines);
-    pass.declare = [fourier, areas, access](frame::PassBuilder& builder) {
+    std::map<std::string, std::string>& defines = pass.program.defines;
+    const Access views =
+        frame::arrayBlock<glsl::ShadowView>(device.limits(), areas.count, "AREA_VIEW_COUNT", defines);
+    const Access sizes =
+        frame::arrayBlock<glsl::VirtualAreaLight>(device.limits(), areas.count, "AREA_COUNT", defines);
+    pass.declare = [fourier, areas, views, sizes](frame::PassBuilder& builder) {
       fourier.declare(builder);
-      builder.read(areas.views, access, "AreaViews", "hemispheres of the maps")
-          .read(areas.areas, access, "AreaLights", "sizes of the area lights");
+      builder.read(areas.views, views, "AreaViews", "hemispheres of the maps")
+          .read(areas.areas, sizes, "AreaLights", "sizes of the area lights");
     };
     pass.bind = [bias = p.real("bias"), behind = p.real("behind"), contact](gpu::Program& program) {
       program.set("bias", bias);

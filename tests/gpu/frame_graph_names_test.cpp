@@ -4,6 +4,8 @@
 #include <gtest/gtest.h>
 
 #include <fstream>
+#include <optional>
+#include <string_view>
 
 #include "tests/cli/process.h"
 #include "tests/gpu/frame_graph_harness.h"
@@ -163,6 +165,36 @@ TEST_F(FrameGraphNames, ConstantsLieOutsideTheGraph) {
   std::vector<uint32_t> result(64);
   graph.buffer(to).read(0, result.data(), 256);
   EXPECT_THAT(result, Each(15u));
+}
+
+/// Buffers have room for more than they hold, which length() of an array in a storage block must not count.
+TEST_F(FrameGraphNames, StorageBlocksAreAsLongAsTheirBuffers) {
+  const std::vector<uint32_t> numbers(64, 5);
+  const auto source = gpu::Buffer::of<uint32_t>(device(), "numbers", numbers);
+  for (const std::string_view way : {"constant", "slot", "imported"}) {
+    FrameGraph graph;
+    PassBuilder pass = graph.addPass("scale");
+    std::optional<SlotHandle> slot;
+    if (way == "constant") pass.constant("Source", source);
+    if (way == "slot") slot = pass.slot("Source");
+    if (way == "imported")
+      pass.read(graph.importBuffer("numbers", source), Access::storageLoad, "Source", "");
+    const BufferHandle to =
+        pass.write(graph.createBuffer("scaled", {256}), Access::storageStore, "Target", "");
+    const ProgramHandle run = pass.program(program("scale", "3u"));
+    std::vector<GLint64> bound;
+    pass.execute([=, &bound, &source](PassContext& context) {
+      context.use(run);
+      if (slot) context.bind(*slot, source);
+      for (GLuint unit = 0; unit < 2; ++unit)
+        context.gl().GetInteger64i_v(GL_SHADER_STORAGE_BUFFER_SIZE, unit, &bound.emplace_back());
+      context.dispatch(64, 1, 1, 64, 1);
+    });
+    graph.output(to);
+    prepare(graph);
+    graph.execute();
+    EXPECT_THAT(bound, Each(256)) << way;
+  }
 }
 
 /// A program of another text has its resources elsewhere.

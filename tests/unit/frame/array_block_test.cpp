@@ -22,9 +22,21 @@ std::map<std::string, std::string> definesOf(int count, Access expected) {
 }
 
 TEST(ArrayBlock, IsAUniformBlockUpToTheDevicesLimit) {
-  const std::map<std::string, std::string> one{{"ELEMENT_COUNT", "1"}}, most{{"ELEMENT_COUNT", "512"}};
-  EXPECT_EQ(definesOf(1, Access::uniformBuffer), one);
+  const std::map<std::string, std::string> few{{"ELEMENT_COUNT", "128"}}, most{{"ELEMENT_COUNT", "512"}};
+  EXPECT_EQ(definesOf(1, Access::uniformBuffer), few);
+  EXPECT_EQ(definesOf(128, Access::uniformBuffer), few);
+  EXPECT_EQ(definesOf(257, Access::uniformBuffer), most);
   EXPECT_EQ(definesOf(kMost, Access::uniformBuffer), most);
+}
+
+TEST(ArrayBlock, StatesALengthThatHoldsTheArrayAndFitsItsBuffer) {
+  for (int count = 1; count <= kMost; ++count) {
+    const auto stated =
+        static_cast<size_t>(std::stoi(definesOf(count, Access::uniformBuffer)["ELEMENT_COUNT"]));
+    ASSERT_GE(stated, static_cast<size_t>(count));
+    ASSERT_LE(stated * sizeof(Element), gpu::blockRoom(static_cast<size_t>(count) * sizeof(Element)))
+        << count;
+  }
 }
 
 TEST(ArrayBlock, IsAStorageBlockBeyondItWhichStatesNoLength) {
