@@ -93,8 +93,9 @@ glm::dvec3 Airlight::sample(const glm::vec3& eye, const glm::vec3& direction, fl
 glm::dvec3 Airlight::ofLight(const Piece& piece, const glsl::Light& whole, const Sampler& sampler,
                              uint32_t pair) const {
   const RayMedium& medium = rays_.medium();
-  const glsl::Light light = fromPointOf(whole, sampler.pair(pair));
-  const glm::vec3 source = lightPoint(light, sampler.pair(pair));
+  const glm::vec2 onLight = sampler.pair(pair);
+  const glsl::Light light = fromPointOf(whole, onLight);
+  const glm::vec3 source = lightPoint(light, onLight);
   const glsl::AirlightRay ray =
       glsl::airlight_ray(medium.medium(), light, source, 0, piece.eye, piece.direction);
   const float low = glsl::airlight_variable(ray, piece.from), high = glsl::airlight_variable(ray, piece.to);

@@ -13,7 +13,7 @@ namespace limn::reference {
 namespace {
 
 struct Header {
-  std::array<char, 8> magic{'l', 'i', 'm', 'n', 'r', 'e', 'f', '2'};
+  std::array<char, 8> magic{'l', 'i', 'm', 'n', 'r', 'e', 'f', '3'};
   std::array<char, 32> hash{};
   uint64_t count = 0;     ///< of sums
   uint64_t samples = 0;   ///< per pixel and half

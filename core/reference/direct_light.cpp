@@ -71,9 +71,9 @@ struct Estimate {
     const Arrival arrival = view.sample(u);
     if (!(arrival.pdf > 0.f)) return;
     const glm::vec3 value = surface.reflectance(arrival.direction) * arrival.radiance * through(arrival);
-    if (value == glm::vec3(0)) return;
+    if (value == glm::vec3(0) || !arrives(arrival)) return;
     const float brdfPdf = surface.pdf(arrival.direction);
-    if (arrives(arrival)) add(value * (powerHeuristic(arrival.pdf, brdfPdf) / arrival.pdf), 1);
+    add(value * (powerHeuristic(arrival.pdf, brdfPdf) / arrival.pdf), 1);
   }
 
   template <class View>

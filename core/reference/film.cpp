@@ -49,21 +49,26 @@ void writeColour(std::span<float> out, const glm::dvec3& colour, double variance
 
 }  // namespace
 
+void View::findHits(const std::stop_token& stop) {
+  hits.assign(pixelCount(), {});
+  tbb::parallel_for(size_t{0}, pixelCount(), [&](size_t index) {
+    if (!stop.stop_requested()) rays.see(frame, near, pixel(index), hits[index]);
+  });
+}
+
 bool View::surface(size_t index, Surface& surface) const {
-  Hit hit;
-  if (!rays.see(frame, near, pixel(index), hit)) return false;
-  surface = surfaceAt(rays, hit, frame, pixel(index));
+  if (!shows(index)) return false;
+  surface = surfaceAt(rays, hits[index], frame, pixel(index));
   return true;
 }
 
-float View::distance(size_t index, float depth) const {
-  if (!(depth > 0)) return std::numeric_limits<float>::max();
-  return depth * glm::length(rayOf(index));
+float View::distance(size_t index) const {
+  if (!shows(index)) return std::numeric_limits<float>::max();
+  return hits[index].depth * glm::length(rayOf(index));
 }
 
-glm::vec3 View::transmittance(size_t index, float depth) const {
-  return rays.medium().transmittance(glm::vec3(frame.camera_position), direction(index),
-                                     distance(index, depth));
+glm::vec3 View::transmittance(size_t index) const {
+  return rays.medium().transmittance(glm::vec3(frame.camera_position), direction(index), distance(index));
 }
 
 glm::vec3 View::direction(size_t index) const {
@@ -84,10 +89,8 @@ std::vector<std::string> channelNames(Term term) {
   return names;
 }
 
-Image renderFeatures(const View& view, Term term, bool background, const std::stop_token& stop,
-                     std::vector<unsigned char>& covered) {
+Image renderFeatures(const View& view, Term term, bool background, const std::stop_token& stop) {
   Image image(view.width, view.height, channelNames(term));
-  covered.assign(view.pixelCount(), 0);
   tbb::parallel_for(size_t{0}, view.pixelCount(), [&](size_t pixel) {
     if (stop.stop_requested()) return;
     const std::span<float> out = imagePixel(view, image, pixel);
@@ -97,7 +100,6 @@ Image renderFeatures(const View& view, Term term, bool background, const std::st
       out.back() = background ? 1.f : 0.f;
       return;
     }
-    covered[pixel] = 1;
     out.back() = 1;
     const glsl::GBufferSurface& values = surface.values;
     const std::array<float, 9> features{surface.depth,
@@ -134,7 +136,7 @@ std::optional<double> noiseOf(const Integrator& integrator, const Request& reque
 }
 
 void develop(const Integrator& integrator, const View& view, const Request& request,
-             const Accumulators& state, const std::vector<unsigned char>& covered, Image& image) {
+             const Accumulators& state, Image& image) {
   const scene::EnvironmentLight environment(request.scene.environment);
   tbb::parallel_for(size_t{0}, view.pixelCount(), [&](size_t pixel) {
     const std::span<float> out = imagePixel(view, image, pixel);
@@ -151,13 +153,13 @@ void develop(const Integrator& integrator, const View& view, const Request& requ
     if (request.term == Term::final) {
       Surface surface;
       glm::vec3 seen;
-      if (!covered[pixel] || !view.surface(pixel, surface))
+      if (!view.surface(pixel, surface))
         seen = environment.radiance(view.direction(pixel));
       else if (request.interfaces != 0)
         seen = surface.values.emission;
       else
         seen = cameraRadiance(surface, *view.rays.draws()[surface.draw].material, environment);
-      mean.value += glm::dvec3(seen * view.transmittance(pixel, out[kDepth]));
+      mean.value += glm::dvec3(seen * view.transmittance(pixel));
     }
     writeColour(out, mean.value, glm::dot(mean.deviation, mean.deviation) / 3);
   });

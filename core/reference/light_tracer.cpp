@@ -67,10 +67,12 @@ struct LightTracer::Path {
   glm::vec3 flux{0};       ///< W
 };
 
-LightTracer::LightTracer(const View& view, const Request& request, const std::vector<float>& depths)
+LightTracer::LightTracer(const View& view, const Request& request)
     : view_(view),
       request_(request),
-      depths_(depths),
+      worldToView_(view.frame.world_to_view),
+      spacing_(glm::length(glm::dvec3(glm::vec3(view.frame.view_ray_dx))),
+               glm::length(glm::dvec3(glm::vec3(view.frame.view_ray_dy)))),
       lights_(mediumLights(request)),
       medium_(view.rays.medium().medium()),
       media_(request.term != Term::caustic && medium_.scattering != glm::vec3(0)),
@@ -248,8 +250,7 @@ void LightTracer::arrive(const glm::vec3& from, const glm::vec3& direction, cons
     const float u = sampler.pair(2).x;
     for (int i = 0; i < kScatterPoints; ++i) {
       const float l = begin + reach * (static_cast<float>(i) + u) / kScatterPoints;
-      scatter(from + l * direction, direction,
-              flux * medium.transmittance(from, direction, l) * (reach / kScatterPoints), film);
+      scatter(from, direction, l, reach / kScatterPoints, flux, film);
     }
   }
   if (surfaces_ && hit)
@@ -258,34 +259,34 @@ void LightTracer::arrive(const glm::vec3& from, const glm::vec3& direction, cons
 
 /// The pixel that shows x, its depth, and one over the pixel's solid angle (1/sr).
 bool LightTracer::project(const glm::vec3& x, size_t& pixel, float& depth, double& perSolidAngle) const {
-  const glm::dvec4 v = glm::dmat4(view_.frame.world_to_view) * glm::dvec4(glm::dvec3(x), 1);
+  const glm::dvec4 v = worldToView_ * glm::dvec4(glm::dvec3(x), 1);
   depth = static_cast<float>(-v.z);
   if (!(depth > view_.near)) return false;
-  const double dx = glm::length(glm::dvec3(glm::vec3(view_.frame.view_ray_dx)));
-  const double dy = glm::length(glm::dvec3(glm::vec3(view_.frame.view_ray_dy)));
-  const double column = std::floor(v.x / -v.z / dx + 0.5 * view_.width);
-  const double row = std::floor(v.y / -v.z / dy + 0.5 * view_.height);
+  const double column = std::floor(v.x / -v.z / spacing_.x + 0.5 * view_.width);
+  const double row = std::floor(v.y / -v.z / spacing_.y + 0.5 * view_.height);
   if (!(column >= 0 && column < view_.width && row >= 0 && row < view_.height)) return false;
   pixel = static_cast<size_t>(row) * static_cast<size_t>(view_.width) + static_cast<size_t>(column);
   const double cosine = -v.z / glm::length(glm::dvec3(v));
-  perSolidAngle = 1 / (cosine * cosine * cosine * dx * dy);
+  perSolidAngle = 1 / (cosine * cosine * cosine * spacing_.x * spacing_.y);
   return true;
 }
 
-/// flux: times the length that the point stands for.
-void LightTracer::scatter(const glm::vec3& x, const glm::vec3& direction, const glm::vec3& flux,
-                          Film& film) const {
+/// At `metres` from where the light of that flux starts, on a piece of that length.
+void LightTracer::scatter(const glm::vec3& from, const glm::vec3& direction, float metres, float length,
+                          const glm::vec3& flux, Film& film) const {
+  const glm::vec3 x = from + metres * direction;
   size_t pixel = 0;
   float depth = 0;
   double perSolidAngle = 0;
   if (!project(x, pixel, depth, perSolidAngle)) return;
-  if (depths_[pixel] > 0 && depth > depths_[pixel]) return;
+  if (view_.shows(pixel) && depth > view_.hits[pixel].depth) return;
+  const RayMedium& medium = view_.rays.medium();
+  const float density = medium.density(x);
+  if (density == 0.f) return;
   const glm::vec3 eye(view_.frame.camera_position), towards = eye - x;
   const float distance = glm::length(towards);
-  const float density = view_.rays.medium().density(x);
-  if (density == 0.f) return;
-  const glm::vec3 leaving = flux * (density * medium_.scattering) *
-                            view_.rays.medium().transmittanceBetween(x, eye) *
+  const glm::vec3 arriving = flux * medium.transmittance(from, direction, metres) * length;
+  const glm::vec3 leaving = arriving * (density * medium_.scattering) * medium.transmittanceBetween(x, eye) *
                             glsl::phase_function(medium_.g, direction, towards / distance);
   film.add(pixel, glm::dvec3(leaving) * (perSolidAngle / (static_cast<double>(distance) * distance)));
 }
@@ -305,7 +306,7 @@ void LightTracer::reflect(const Hit& hit, const glm::vec3& direction, const glm:
   size_t pixel = 0;
   float depth = 0;
   double perSolidAngle = 0;
-  if (!(cosine > 0) || !project(met->position, pixel, depth, perSolidAngle) || !(depths_[pixel] > 0)) return;
+  if (!(cosine > 0) || !project(met->position, pixel, depth, perSolidAngle) || !view_.shows(pixel)) return;
   if (view_.rays.hidden(view_.frame, view_.near, view_.pixel(pixel), met->rayOrigin(towards))) return;
   const glm::vec3 reflected = flux * met->f(towards / distance, -direction) * (cosine * lit / crossed);
   film.add(pixel, glm::dvec3(reflected * view_.rays.medium().transmittanceBetween(met->position, eye)) *

@@ -24,7 +24,7 @@ bool isPunctual(const glsl::Light& light) {
 
 bool unblocked(const RayScene& rays, const Surface& receiver, const Arrival& arrival) {
   const glm::vec3 origin = receiver.rayOrigin(arrival.direction);
-  if (arrival.finite) return !rays.shadowed(origin, arrival.target - origin, 1.f);
+  if (arrival.finite) return !rays.shadowed(origin, arrival.target - origin, arrival.end);
   return !rays.shadowed(origin, arrival.direction, std::numeric_limits<float>::infinity());
 }
 
@@ -37,6 +37,10 @@ PointView::PointView(const glsl::Light& light, const Surface& receiver) {
     if (!(distance > 0.f)) return;
     arrival_.direction = offset / distance;
     arrival_.target = light.position;
+    // A lamp may be mounted on a surface, which rounding puts on either side of it: the more so, the flatter
+    // the light falls in.
+    const float clearance = 16 * std::max(lightOffset(light), 0x1p-20f * distance);
+    arrival_.end = 1 - std::min(clearance / distance, 0.5f);
     arrival_.finite = true;
   }
   above_ = glm::dot(arrival_.direction, receiver.values.geometric_normal) > 0.f &&
@@ -126,8 +130,9 @@ Arrival ConeView::towards(const glm::vec3& direction) const {
 Arrival EnvironmentView::towards(const glm::vec3& direction) const {
   Arrival arrival;
   arrival.direction = direction;
-  arrival.pdf = environment_.pdf(direction);
-  arrival.radiance = environment_.radiance(direction);
+  const scene::EnvironmentLight::Sight seen = environment_.at(direction);
+  arrival.pdf = seen.pdf;
+  arrival.radiance = seen.radiance;
   return arrival;
 }
 

@@ -109,7 +109,8 @@ class Work {
     scene::setMedium(view_.frame, request.scene.medium, request.pose.bounds);
     const bool background = showsBackground(request.term, static_cast<bool>(request.scene.environment),
                                             request.scene.medium.present());
-    image_ = renderFeatures(view_, request.term, background, request.stop, covered_);
+    view_.findHits(request.stop);
+    image_ = renderFeatures(view_, request.term, background, request.stop);
     checkStop();
     state_.sums.resize(2 * view_.pixelCount());
     prepareMedia();
@@ -145,17 +146,12 @@ class Work {
  private:
   void prepareMedia() {
     const Term term = request_.term;
-    depths_.resize(view_.pixelCount());
-    const auto width = static_cast<size_t>(view_.width);
-    const int z = image_.channel("Z");
-    for (size_t i = 0; i < depths_.size(); ++i)
-      depths_[i] = image_.at(static_cast<int>(i % width), view_.height - 1 - static_cast<int>(i / width), z);
-    counts_ = covered_;
     if (term == Term::media || term == Term::final) airlight_.emplace(rays_, request_);
     if (airlight_ && !airlight_->present()) airlight_.reset();
-    if (airlight_) counts_.assign(counts_.size(), 1);
+    counts_.resize(view_.pixelCount());
+    for (size_t i = 0; i < counts_.size(); ++i) counts_[i] = airlight_ || view_.shows(i);
     if (term != Term::media && term != Term::caustic && term != Term::final) return;
-    tracer_.emplace(view_, request_, depths_);
+    tracer_.emplace(view_, request_);
     if (!tracer_->present()) tracer_.reset();
   }
 
@@ -179,10 +175,11 @@ class Work {
 
   /// Samples per half of the next pass: as many as there are, between limits, so that the counts 8, 16, 32,
   /// ... at which noise is tested all occur. A power of two that depends on the request and on what is done
-  /// alone.
+  /// alone. Factors of a light take one ray a sample, however many lights there are.
   uint32_t passSize() const {
-    const double work = static_cast<double>(view_.pixelCount()) *
-                        static_cast<double>(1 + request_.pose.lights.size()) * (1.0 + request_.bounces);
+    const size_t lights = isLightFactor(request_.term) ? 0 : request_.pose.lights.size();
+    const double work =
+        static_cast<double>(view_.pixelCount()) * static_cast<double>(1 + lights) * (1.0 + request_.bounces);
     const double wanted = std::clamp(0x1p21 / work, 1.0, 64.0);
     return std::min(std::bit_floor(static_cast<uint32_t>(wanted)), std::max(state_.samples, 8u));
   }
@@ -208,10 +205,9 @@ class Work {
 
   void samplePixel(size_t pixel, uint32_t count) {
     Surface surface;
-    const bool seen = reflects() && covered_[pixel] && view_.surface(pixel, surface);
+    const bool seen = reflects() && view_.surface(pixel, surface);
     if (!seen && !airlight_) return;
-    const float depth = depths_[pixel];
-    const glm::vec3 passes = view_.transmittance(pixel, depth);
+    const glm::vec3 passes = seen ? view_.transmittance(pixel) : glm::vec3(0);
     for (uint32_t half = 0; half < 2; ++half) {
       Sampler sampler(request_.seed, pixel, half);
       Sums& sums = state_.sums[2 * pixel + half];
@@ -223,15 +219,16 @@ class Work {
       if (seen) integrator_->sample(surface, sampler, state_.samples, count, reflected);
       for (int c = 0; c < 3; ++c)
         sums[static_cast<size_t>(c)] += reflected[static_cast<size_t>(c)] * static_cast<double>(passes[c]);
-      if (airlight_) sampleAirlight(pixel, depth, count, sampler, sums);
+      if (airlight_) sampleAirlight(pixel, count, sampler, sums);
     }
   }
 
-  void sampleAirlight(size_t pixel, float depth, uint32_t count, Sampler& sampler, Sums& sums) const {
+  void sampleAirlight(size_t pixel, uint32_t count, Sampler& sampler, Sums& sums) const {
     const glm::vec3 eye(view_.frame.camera_position), direction = view_.direction(pixel);
+    const float end = view_.distance(pixel);
     for (uint32_t i = state_.samples; i < state_.samples + count; ++i) {
       sampler.startSample(i);
-      const glm::dvec3 value = airlight_->sample(eye, direction, view_.distance(pixel, depth), sampler);
+      const glm::dvec3 value = airlight_->sample(eye, direction, end, sampler);
       for (int c = 0; c < 3; ++c) sums[static_cast<size_t>(c)] += value[c];
     }
   }
@@ -265,7 +262,7 @@ class Work {
     Result result;
     result.noiseRms = noise().value_or(0);
     result.spp = static_cast<int>(2 * state_.samples);
-    develop(*integrator_, view_, request_, state_, covered_, image_);
+    develop(*integrator_, view_, request_, state_, image_);
     auto& metadata = image_.metadata();
     metadata["noise_rms"] = fmt::format("{}", result.noiseRms);
     metadata["spp"] = fmt::format("{}", result.spp);
@@ -285,10 +282,9 @@ class Work {
   RayScene rays_;
   View view_;
   std::unique_ptr<Integrator> integrator_;
-  uint32_t needed_;                              ///< samples per half
-  std::vector<unsigned char> covered_, counts_;  ///< counts_: for the noise
+  uint32_t needed_;                    ///< samples per half
+  std::vector<unsigned char> counts_;  ///< which pixels count for the noise
   Image image_;
-  std::vector<float> depths_;  ///< of what each pixel shows, 0: nothing
   std::optional<Airlight> airlight_;
   std::optional<LightTracer> tracer_;
   Accumulators state_;

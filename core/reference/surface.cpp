@@ -115,6 +115,7 @@ struct Triangle {
   /// lies in both of their planes, as far as floats can tell, and rays that leave it must not meet the other
   /// one.
   glm::vec3 inward(const Corner& corner, float clearance) const {
+    if (isClear(corner, static_cast<double>(clearance))) return glm::vec3(0);
     const double twiceArea = glm::length(glm::cross(p[1] - p[0], p[2] - p[0]));
     double share = 0;
     for (int k = 0; k < 3; ++k) {
@@ -129,6 +130,19 @@ struct Triangle {
                              static_cast<double>(corner.weight[2]) * p[2];
     return glm::vec3(share * ((p[0] + p[1] + p[2]) / 3.0 - point));
   }
+  /// Whether the point is clearly farther than `clearance` from every edge: what most points are is found so
+  /// without a root. The height over an edge is twice the area over its length.
+  bool isClear(const Corner& corner, double clearance) const {
+    const glm::dvec3 across = glm::cross(p[1] - p[0], p[2] - p[0]);
+    const double area2 = glm::dot(across, across), least = 1.001 * clearance * clearance;
+    bool clear = true;
+    for (int k = 0; k < 3; ++k) {
+      const glm::dvec3 edge = p[(k + 2) % 3] - p[(k + 1) % 3];
+      const double weight = static_cast<double>(corner.weight[k]);
+      clear = clear && weight > 0 && weight * weight * area2 > least * glm::dot(edge, edge);
+    }
+    return clear;
+  }
   /// Of the front face; `otherwise` where the triangle has no area.
   glm::vec3 normal(float orientation, const glm::vec3& otherwise) const {
     const glm::dvec3 across = glm::cross(p[1] - p[0], p[2] - p[0]);
@@ -137,7 +151,8 @@ struct Triangle {
   }
 };
 
-/// The surface as seen from the direction `view`. Where it shows its back, both of its normals turn round.
+/// The surface as seen from the direction `view`; 0: as its front is. Where it shows its back, both of its
+/// normals turn round.
 Surface seenFrom(const RayScene& rays, const Hit& hit, const glm::vec3& view,
                  const std::optional<TextureFootprint>& footprint, bool& back) {
   const Draw& draw = rays.draws()[hit.draw];
@@ -257,8 +272,7 @@ std::optional<Surface> surfaceAlong(const RayScene& rays, const Hit& hit, const 
 
 Surface frontAt(const RayScene& rays, const Hit& hit) {
   bool back = false;
-  Surface surface = seenFrom(rays, hit, glm::vec3(0, 0, 1), std::nullopt, back);
-  if (back) surface = seenFrom(rays, hit, glm::vec3(0, 0, -1), std::nullopt, back);
+  Surface surface = seenFrom(rays, hit, glm::vec3(0), std::nullopt, back);
   surface.view = surface.values.normal;
   return surface;
 }

@@ -12,6 +12,7 @@ namespace limn::scene {
 
 /// Returns the texel of a side of `size` texels that a wrapped index names.
 inline int wrapIndex(int i, int size, Wrap wrap) {
+  if (i >= 0 && i < size) return i;  // most are: a division is what takes the time of a look-up
   if (wrap == Wrap::clamp) return std::clamp(i, 0, size - 1);
   const int period = wrap == Wrap::mirror ? 2 * size : size;
   i %= period;

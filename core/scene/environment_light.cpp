@@ -77,8 +77,11 @@ double EnvironmentLight::weight(int x, int y) const {
 
 glm::vec3 EnvironmentLight::radiance(const glm::vec3& direction) const {
   if (environment_.width == 0) return glm::vec3(0);
-  const glm::vec2 uv =
-      glsl::equirectangular_uv(glsl::environment_lookup_direction(direction, environment_.rotation));
+  return radianceAt(
+      glsl::equirectangular_uv(glsl::environment_lookup_direction(direction, environment_.rotation)));
+}
+
+glm::vec3 EnvironmentLight::radianceAt(const glm::vec2& uv) const {
   return environment_.scale * bilinearOf(environment_, uv, [&](int x, int y) {
            return environment_.texels[static_cast<size_t>(y) * static_cast<size_t>(environment_.width) +
                                       static_cast<size_t>(x)];
@@ -100,8 +103,18 @@ glm::vec3 EnvironmentLight::sample(glm::vec2 u) const {
 
 float EnvironmentLight::pdf(const glm::vec3& direction) const {
   const glm::vec3 lookup = glsl::environment_lookup_direction(direction, environment_.rotation);
-  const double share = bilinearOf(environment_, glsl::equirectangular_uv(lookup),
-                                  [&](int x, int y) { return static_cast<float>(weight(x, y) / total_); });
+  return pdfAt(glsl::equirectangular_uv(lookup), lookup);
+}
+
+EnvironmentLight::Sight EnvironmentLight::at(const glm::vec3& direction) const {
+  const glm::vec3 lookup = glsl::environment_lookup_direction(direction, environment_.rotation);
+  const glm::vec2 uv = glsl::equirectangular_uv(lookup);
+  return {radianceAt(uv), pdfAt(uv, lookup)};
+}
+
+float EnvironmentLight::pdfAt(const glm::vec2& uv, const glm::vec3& lookup) const {
+  const double share =
+      bilinearOf(environment_, uv, [&](int x, int y) { return static_cast<float>(weight(x, y) / total_); });
   const double pixels = static_cast<double>(environment_.width) * environment_.height;
   const double sine =
       std::max(std::hypot(static_cast<double>(lookup.x), static_cast<double>(lookup.z)), 1e-12);

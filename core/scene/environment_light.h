@@ -30,8 +30,18 @@ class LIMN_API EnvironmentLight {
   glm::vec3 sample(glm::vec2 u) const;
   float pdf(const glm::vec3& direction) const;
 
+  /// Holds what comes from a direction, and how densely sample() chooses it.
+  struct Sight {
+    glm::vec3 radiance;  ///< W/(sr m^2)
+    float pdf;           ///< 1/sr
+  };
+  /// Returns radiance() and pdf() of one direction, which share its place on the map. Requires present().
+  Sight at(const glm::vec3& direction) const;
+
  private:
   double weight(int x, int y) const;
+  glm::vec3 radianceAt(const glm::vec2& uv) const;
+  float pdfAt(const glm::vec2& uv, const glm::vec3& lookup) const;
 
   const Environment& environment_;
   std::vector<float> rows_;     ///< cumulative weight of rows, height + 1, from 0 to 1

@@ -16,8 +16,8 @@ namespace limn::reference {
 
 class LightTracer {
  public:
-  /// Takes `depths`, the depth of each pixel of `view`, 0 where nothing is seen.
-  LightTracer(const View& view, const Request& request, const std::vector<float>& depths);
+  /// Takes a view whose hits are found.
+  LightTracer(const View& view, const Request& request);
 
   /// Returns whether any light may reach the camera this way.
   bool present() const { return !lights_.empty() && objects_.radius() > 0; }
@@ -37,13 +37,15 @@ class LightTracer {
                const Sampler& sampler, Film& film) const;
   void arrive(const glm::vec3& from, const glm::vec3& direction, const glm::vec3& flux, const Hit* hit,
               const Sampler& sampler, Film& film) const;
-  void scatter(const glm::vec3& x, const glm::vec3& direction, const glm::vec3& flux, Film& film) const;
+  void scatter(const glm::vec3& from, const glm::vec3& direction, float metres, float length,
+               const glm::vec3& flux, Film& film) const;
   void reflect(const Hit& hit, const glm::vec3& direction, const glm::vec3& flux, Film& film) const;
   bool project(const glm::vec3& x, size_t& pixel, float& depth, double& perSolidAngle) const;
 
   const View& view_;
   const Request& request_;
-  const std::vector<float>& depths_;
+  glm::dmat4 worldToView_;
+  glm::dvec2 spacing_;  ///< of pixels at depth 1, along x and y
   std::vector<glsl::Light> lights_;
   glsl::Medium medium_;
   scene::Bounds objects_;  ///< specular ones

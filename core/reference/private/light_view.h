@@ -15,6 +15,7 @@ namespace limn::reference {
 struct Arrival {
   glm::vec3 direction{0};  ///< unit, from the receiver
   glm::vec3 target{0};     ///< where it comes from, just clear of the light's own surface, if finite
+  float end = 1;           ///< share of the way there on which surfaces block it
   bool finite = false;
   float pdf = 0;          ///< density of sample() for this direction, 1/sr; 0: nothing arrives
   glm::vec3 radiance{0};  ///< W/(sr m^2)

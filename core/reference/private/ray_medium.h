@@ -56,16 +56,21 @@ class RayMedium {
   }
 
   glm::vec3 transmittance(const glm::vec3& origin, const glm::vec3& direction, float end) const {
+    if (clear()) return glm::vec3(1);
     return glsl::medium_transmittance(medium_, length(origin, direction, end));
   }
   glm::vec3 transmittanceToInfinity(const glm::vec3& origin, const glm::vec3& direction) const {
     return transmittance(origin, direction, std::numeric_limits<float>::max());
   }
   glm::vec3 transmittanceBetween(const glm::vec3& a, const glm::vec3& b) const {
+    if (clear()) return glm::vec3(1);
     return glsl::medium_transmittance(medium_, lengthBetween(a, b));
   }
 
  private:
+  /// Most scenes have no medium, and every sample of a light asks for what it leaves.
+  bool clear() const { return medium_.extinction == glm::vec3(0); }
+
   glsl::Medium medium_{};
   std::shared_ptr<const scene::DensityGrid> grid_;
 };

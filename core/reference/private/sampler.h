@@ -24,11 +24,11 @@ inline uint64_t combine(uint64_t a, uint64_t b) {
   return mixBits(a * 0x9e3779b97f4a7c15ull + b + 1);
 }
 
-/// Scrambles all 32 bits by hash-based Owen scrambling (Burley 2020, Practical Hash-based Owen Scrambling,
-/// JCGT 9(4), section 3, with the permutation of Laine and Karras 2011).
-inline uint32_t owenScramble(uint32_t x, uint32_t seed) {
-  x = reverseBits(x);
-  x += seed;
+/// Scrambles all 32 bits of the number whose bits in reverse order are `reversed`, by hash-based Owen
+/// scrambling (Burley 2020, Practical Hash-based Owen Scrambling, JCGT 9(4), section 3, with the permutation
+/// of Laine and Karras 2011).
+inline uint32_t owenScramble(uint32_t reversed, uint32_t seed) {
+  uint32_t x = reversed + seed;
   x ^= x * 0x6c50b47cu;
   x ^= x * 0xb82f1e52u;
   x ^= x * 0xc7afe638u;
@@ -36,12 +36,15 @@ inline uint32_t owenScramble(uint32_t x, uint32_t seed) {
   return reverseBits(x);
 }
 
-/// Returns the second Sobol dimension of index i (the first is reverseBits(i)).
-inline uint32_t sobolSecond(uint32_t i) {
-  uint32_t result = 0;
-  for (uint32_t direction = 1u << 31; i != 0; i >>= 1, direction ^= direction >> 1)
-    if (i & 1u) result ^= direction;
-  return result;
+/// Returns the second Sobol dimension of index i with its bits in reverse order (the first is i itself in
+/// that order). Bit j is the sum modulo 2 of those bits k of i for which the binomial coefficient of k over j
+/// is odd: where k has all bits of j (Lucas 1878). Summed over one bit of j and k at a time.
+inline uint32_t sobolSecondReversed(uint32_t i) {
+  i ^= i >> 16;
+  i ^= (i >> 8) & 0x00ff00ffu;
+  i ^= (i >> 4) & 0x0f0f0f0fu;
+  i ^= (i >> 2) & 0x33333333u;
+  return i ^ ((i >> 1) & 0x55555555u);
 }
 
 /// Generates the random numbers of one pixel in one half of the samples: any pair of dimensions of any
@@ -50,22 +53,22 @@ class Sampler {
  public:
   Sampler(uint64_t seed, uint64_t pixel, uint32_t half) : seed_(combine(combine(seed, pixel), half)) {}
 
-  void startSample(uint32_t index) { index_ = index; }
+  void startSample(uint32_t index) { reversedIndex_ = reverseBits(index); }
 
   /// Returns a point in [0, 1)^2; every pair is a scrambled and shuffled (0, 2)-sequence over the sample
   /// index.
   glm::vec2 pair(uint32_t number) const {
     const uint64_t bits = combine(seed_, number);
-    const uint32_t i = owenScramble(index_, static_cast<uint32_t>(mixBits(bits)));
-    return {toUnit(owenScramble(reverseBits(i), static_cast<uint32_t>(bits))),
-            toUnit(owenScramble(sobolSecond(i), static_cast<uint32_t>(bits >> 32)))};
+    const uint32_t i = owenScramble(reversedIndex_, static_cast<uint32_t>(mixBits(bits)));
+    return {toUnit(owenScramble(i, static_cast<uint32_t>(bits))),
+            toUnit(owenScramble(sobolSecondReversed(i), static_cast<uint32_t>(bits >> 32)))};
   }
 
  private:
   static float toUnit(uint32_t x) { return static_cast<float>(x >> 8) * 0x1p-24f; }
 
   uint64_t seed_;
-  uint32_t index_ = 0;
+  uint32_t reversedIndex_ = 0;  ///< of the sample: its bits in reverse order
 };
 
 /// Returns the random numbers of light path `path`, of one half of the samples. They belong to no pixel. A

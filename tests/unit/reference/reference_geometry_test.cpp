@@ -114,6 +114,29 @@ TEST(ReferenceGeometry, RaysFromBeyondAllScenesMeetNothing) {
   EXPECT_EQ(image.at(2, 2, image.channel("coverage")), 0.f);
 }
 
+/// Mounted on a ceiling, in whose plane it lies, level or tilted, at any scale: the ceiling does not hide the
+/// lamp.
+TEST(ReferenceGeometry, ALampInTheCeilingLightsTheRoom) {
+  for (const float tilt : {0.f, 0.4f})
+    for (const float size : {1e-3f, 1.f, 1e3f}) {
+      const glm::vec3 up(std::sin(tilt), std::cos(tilt), 0), along(std::cos(tilt), -std::sin(tilt), 0);
+      const glm::vec3 lamp = 1.5f * up + 0.3f * along;
+      World world;
+      const int material = world.addMaterial(glm::vec3(0.5f), true);
+      for (const float height : {0.f, 1.5f}) world.addQuad(height * up, 4.f * along, {0, 0, -4}, material);
+      world.addLight(glsl::light_point, lamp, -up, glm::vec3(3));
+      world.camera = scene::lookAt(1.2f * up + glm::vec3(0, 0, 0.3f), {0, 0, 0}, 1.4f);
+      world.rescale(size);
+      const Image image = render(world.request(24, Term::direct, 2)).image;
+      const double error = meanRelativeError(world, image, "R", [&](const glm::dvec3& place) {
+        const glm::dvec3 way = static_cast<double>(size) * glm::dvec3(lamp) - place;
+        const double distance = glm::length(way) / static_cast<double>(size);
+        return 0.5 / M_PI * 3 * glm::dot(glm::dvec3(up), glm::normalize(way)) / (distance * distance);
+      });
+      EXPECT_LT(error, 1e-4) << tilt << " " << size;
+    }
+}
+
 /// Joints that mirror turn the winding and the bitangents round as the transform of a rigid mesh does.
 TEST(ReferenceGeometry, MirroredSkinsEqualMirroredInstances) {
   World rigid = floorWorld();

@@ -39,9 +39,42 @@ TEST(ReferenceEnvironment, DensityIntegratesToOneAndFollowsTheRadiance) {
     sampler.startSample(static_cast<uint32_t>(i));
     const glm::vec3 d = light.sample(sampler.pair(0));
     EXPECT_NEAR(glm::length(d), 1, 1e-4);
-    estimate += static_cast<double>(light.radiance(d).r / light.pdf(d)) / count;
+    const scene::EnvironmentLight::Sight seen = light.at(d);
+    EXPECT_EQ(seen.radiance, light.radiance(d));
+    EXPECT_EQ(seen.pdf, light.pdf(d));
+    estimate += static_cast<double>(seen.radiance.r / seen.pdf) / count;
   }
   EXPECT_NEAR(estimate / energy, 1, 2e-3);
+}
+
+/// By its direction numbers (Sobol 1967): each is the one before it and half of that, digit by digit.
+TEST(ReferenceSampler, TheSecondDimensionIsSobols) {
+  for (uint32_t sample = 0; sample < 4096; ++sample) {
+    const uint32_t index = sample < 1024 ? sample : static_cast<uint32_t>(mixBits(sample));
+    uint32_t expected = 0, direction = 1u << 31;
+    for (int bit = 0; bit < 32; ++bit, direction ^= direction >> 1)
+      if ((index >> bit & 1u) != 0) expected ^= direction;
+    ASSERT_EQ(reverseBits(sobolSecondReversed(index)), expected) << index;
+  }
+}
+
+/// Of 64 successive samples one lies in each of 64 equal boxes, whatever their shape.
+TEST(ReferenceSampler, PairsAreStratified) {
+  for (const uint32_t first : {0u, 64u, 6400u})
+    for (uint32_t number = 0; number < 8; ++number)
+      for (int columns = 1, rows = 64; columns <= 64; columns *= 2, rows /= 2) {
+        uint64_t met = 0;
+        Sampler sampler(5, 17, number % 2);
+        for (uint32_t i = first; i < first + 64; ++i) {
+          sampler.startSample(i);
+          const glm::vec2 point = sampler.pair(number);
+          const int column = static_cast<int>(point.x * static_cast<float>(columns)),
+                    row = static_cast<int>(point.y * static_cast<float>(rows));
+          ASSERT_TRUE(column >= 0 && column < columns && row >= 0 && row < rows) << point.x << " " << point.y;
+          met |= uint64_t{1} << (row * columns + column);
+        }
+        EXPECT_EQ(met, ~uint64_t{0}) << first << " " << number << " " << columns;
+      }
 }
 
 TEST(ReferenceSampler, LightPathsBeyond32BitsDoNotRepeat) {
