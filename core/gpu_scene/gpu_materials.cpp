@@ -123,9 +123,19 @@ GpuMaterials::GpuMaterials(gpu::Device& device, const Scene& scene) : device_(de
   for (const Material& material : scene.materials)
     if (material.normalTexture.image != kNone)
       isNormalMap[static_cast<size_t>(material.normalTexture.image)] = true;
-  for (size_t i = 0; i < scene.images.size(); ++i)
-    textures_.push_back(upload(device, scene.images[i], isNormalMap[i]));
-  for (const relief::HeightField& field : scene.heights) textures_.push_back(upload(device, field));
+  std::vector<bool> isBound(scene.images.size() + scene.heights.size());
+  for (const Set& set : sets_)
+    for (const int texture : set.textures)
+      if (texture != kNone) isBound[static_cast<size_t>(texture)] = true;
+  // What no material binds is what lights shine through, or that of which another image was made.
+  for (size_t i = 0; i < isBound.size(); ++i) {
+    if (!isBound[i])
+      textures_.emplace_back();
+    else if (i < scene.images.size())
+      textures_.push_back(upload(device, scene.images[i], isNormalMap[i]));
+    else
+      textures_.push_back(upload(device, scene.heights[i - scene.images.size()]));
+  }
   if (textures_.empty()) return;
   for (const GLint wrapS : kWraps) {
     for (const GLint wrapT : kWraps) {

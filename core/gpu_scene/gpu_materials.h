@@ -61,9 +61,10 @@ class GpuMaterials {
   gpu::Buffer models_;
   gpu::Buffer measured_;
   uint32_t modelKinds_ = 0;
-  gpu::Buffer blocks_;                  ///< the same data, each at the alignment of a uniform block
-  size_t blockStride_ = 0;              ///< bytes
-  std::vector<gpu::Texture> textures_;  ///< those of Scene::images, then the slopes of Scene::heights
+  gpu::Buffer blocks_;      ///< the same data, each at the alignment of a uniform block
+  size_t blockStride_ = 0;  ///< bytes
+  /// Holds those of Scene::images, then the slopes of Scene::heights; empty where no material binds them.
+  std::vector<gpu::Texture> textures_;
   std::vector<gpu::Sampler> samplers_;  ///< 3 x wrapS + wrapT
   std::vector<Set> sets_;
 };

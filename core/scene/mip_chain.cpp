@@ -32,22 +32,32 @@ std::vector<Footprint> footprints(int from, int to) {
   return out;
 }
 
-/// Linear value to the nearest byte, as sRGB by a search among the decoded steps' midpoints.
+/// Linear value to the nearest byte, as sRGB by the number of midpoints between decoded steps that it
+/// reaches. A table has those of values between two of which lies one midpoint at most.
 class Encoder {
  public:
   explicit Encoder(bool srgb) : srgb_(srgb) {
     for (int i = 0; i < 255; ++i)
       midpoint_[static_cast<std::size_t>(i)] = glsl::srgb_decode((static_cast<float>(i) + 0.5f) / 255.f);
+    std::size_t reached = 0;
+    for (std::size_t step = 0; step < reached_.size(); ++step) {
+      while (reached < midpoint_.size() && midpoint_[reached] * kSteps <= static_cast<float>(step)) ++reached;
+      reached_[step] = static_cast<std::uint8_t>(reached);
+    }
   }
   std::uint8_t operator()(float value) const {
     if (!srgb_) return static_cast<std::uint8_t>(std::clamp(value, 0.f, 1.f) * 255.f + 0.5f);
-    return static_cast<std::uint8_t>(std::upper_bound(midpoint_.begin(), midpoint_.end(), value) -
-                                     midpoint_.begin());
+    std::size_t reached = reached_[static_cast<std::size_t>(std::clamp(value, 0.f, 1.f) * kSteps)];
+    while (reached < midpoint_.size() && midpoint_[reached] <= value) ++reached;
+    return static_cast<std::uint8_t>(reached);
   }
 
  private:
+  static constexpr int kSteps = 4096;  // a power of two: products with it are exact
+
   bool srgb_;
   std::array<float, 255> midpoint_{};
+  std::array<std::uint8_t, kSteps + 1> reached_{};
 };
 
 TextureImage::Level halve(const TextureImage::Level& from, bool srgb, const Encoder& encode) {
@@ -81,7 +91,8 @@ TextureImage::Level halve(const TextureImage::Level& from, bool srgb, const Enco
 }  // namespace
 
 void buildMipChain(TextureImage& texture) {
-  const Encoder encode(texture.srgb);
+  static const Encoder linear(false), srgb(true);
+  const Encoder& encode = texture.srgb ? srgb : linear;
   while (texture.levels.back().width > 1 || texture.levels.back().height > 1)
     texture.levels.push_back(halve(texture.levels.back(), texture.srgb, encode));
 }

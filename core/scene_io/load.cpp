@@ -10,6 +10,7 @@
 #include "core/base/error.h"
 #include "core/base/file.h"
 #include "core/base/text.h"
+#include "core/scene/draw_instance.h"
 #include "core/scene_io/density_grid_file.h"
 #include "core/scene_io/private/loader.h"
 
@@ -157,9 +158,19 @@ void Loader::readSceneExtras() {
   }
 }
 
-void Loader::checkResult() const {
+void Loader::checkResult() {
   const Pose pose = evaluate(scene_, 0);
-  if (!pose.bounds.empty() && !std::isfinite(pose.bounds.radius()))
+  const auto isFinite = [](const glm::mat4& matrix) {
+    for (int c = 0; c < 4; ++c)
+      if (glm::any(glm::isnan(matrix[c])) || glm::any(glm::isinf(matrix[c]))) return false;
+    return true;
+  };
+  // Bounds pass over what is no number, as 0 times an infinite scale is.
+  const bool allFinite = std::ranges::all_of(pose.instances, isFinite, &DrawInstance::objectToWorld) &&
+                         std::ranges::all_of(pose.deformed, [&](const Deformation& state) {
+                           return std::ranges::all_of(state.joints, isFinite);
+                         });
+  if (!allFinite || (!pose.bounds.empty() && !std::isfinite(pose.bounds.radius())))
     fail("the scene's extent is not a finite number; check the scales of its nodes");
   const auto check = [&](const glm::vec3& place, const char* kind, const std::string& name) {
     if (!std::isfinite(place.x) || !std::isfinite(place.y) || !std::isfinite(place.z))
@@ -170,6 +181,12 @@ void Loader::checkResult() const {
     check(pose.lights[i].position, "light", pose.lightNames[i]);
   for (const CameraPose& camera : pose.cameras)
     check(glm::vec3(camera.worldToView[3]), "camera", camera.name);
+  std::size_t lights = 0;
+  for (const Node& node : scene_.nodes) lights += node.light != kNone ? 1 : 0;
+  for (const DrawInstance& instance : pose.instances)
+    if (instance.node != kNone) lights += primitiveOf(scene_, pose, instance).emissiveParts.size();
+  if (pose.lights.size() < lights)
+    warn("emissive rectangles that their nodes skew are displayed but light nothing");
 }
 
 Scene Loader::load(std::span<const std::byte> bytes) {

@@ -286,6 +286,8 @@ void Loader::takeImages(Document& document) {
   json& root = document.root;
   const auto list = root.find("images");
   if (list == root.end()) return;
+  // Files may have one image for each texture that shows a picture: it is decoded once.
+  std::map<std::pair<std::string_view, int>, int> known;
   for (std::size_t i = 0; i < list->size(); ++i) {
     const json& image = (*list)[i];
     ImageSource source;
@@ -301,6 +303,9 @@ void Loader::takeImages(Document& document) {
     } else {
       fail(fmt::format("{} has neither a uri nor a bufferView", what));
     }
+    const std::string_view name =
+        uri != image.end() ? uri->get_ref<const std::string&>() : std::string_view();
+    source.first = known.emplace(std::pair(name, source.view), static_cast<int>(i)).first->second;
     imageSources_.push_back(std::move(source));
   }
   root.erase(list);

@@ -74,10 +74,10 @@ int Loader::readHeight(const tinygltf::Value& extras, std::vector<TextureUse>& u
   const relief::Wrap wrap = wrapS == Wrap::clamp ? relief::Wrap::clamped : relief::Wrap::periodic;
   uses.push_back({nullptr, uvsOf(info, place), place});
 
-  const HeightKey key{texture.source, wrap, scale, offset, tile.x, tile.y};
+  const ImageSource& source = imageAt(texture.source, place);
+  const HeightKey key{source.first, wrap, scale, offset, tile.x, tile.y};
   const auto known = heightIndex_.find(key);
   if (known != heightIndex_.end()) return known->second;
-  const ImageSource& source = imageAt(texture.source, place);
   try {
     const std::string label = imageLabel(texture.source);
     std::vector<std::byte> storage;

@@ -94,10 +94,11 @@ int Loader::addImage(int index, bool srgb, Image8 decoded) {
 }
 
 int Loader::readImage(int index, bool another, bool srgb, const std::string& what) {
-  const auto known = imageIndex_.find({index, srgb});
+  const int first = imageAt(index, what).first;
+  const auto known = imageIndex_.find({first, srgb});
   if (known != imageIndex_.end()) return known->second;
-  std::optional<Image8> decoded = decodeImage(index, another, what);
-  return imageIndex_[{index, srgb}] = decoded ? addImage(index, srgb, *std::move(decoded)) : kNone;
+  std::optional<Image8> decoded = decodeImage(first, another, what);
+  return imageIndex_[{first, srgb}] = decoded ? addImage(first, srgb, *std::move(decoded)) : kNone;
 }
 
 int Loader::firstImage(const tinygltf::Texture& texture, const std::string& what,
@@ -185,6 +186,12 @@ void Loader::readTexture(const TextureInfo& info, bool srgb, TextureRef& out, st
 
 void Loader::readMaterialExtensions(const tinygltf::Material& source, Material& m, const std::string& what) {
   const auto& map = source.extensions;
+  const auto readColour = [&](const tinygltf::Value& from, const char* key, double most, glm::vec3& out) {
+    if (!from.Has(key)) return;
+    const std::string place = fmt::format("{} {}", what, key);
+    const std::vector<float> rgb = numbers(from.Get(key), 3, place);
+    for (int c = 0; c < 3; ++c) out[c] = ranged(rgb[static_cast<std::size_t>(c)], 0, most, place);
+  };
   if (const auto* e = extension(map, "KHR_materials_emissive_strength")) {
     const float strength = ranged(get(*e, "emissiveStrength", 1), 0, 1e30, what + " emissiveStrength");
     for (int c = 0; c < 3; ++c)
@@ -197,10 +204,7 @@ void Loader::readMaterialExtensions(const tinygltf::Material& source, Material& 
   }
   if (const auto* e = extension(map, "KHR_materials_specular")) {
     m.specularFactor = ranged(get(*e, "specularFactor", 1), 0, 1, what + " specularFactor");
-    if (e->Has("specularColorFactor")) {
-      const auto v = numbers(e->Get("specularColorFactor"), 3, what + " specularColorFactor");
-      m.specularColour = glm::max(glm::vec3(v[0], v[1], v[2]), glm::vec3(0));
-    }
+    readColour(*e, "specularColorFactor", 1e30, m.specularColour);
     if (e->Has("specularTexture") || e->Has("specularColorTexture"))
       warn(what + ": textures of KHR_materials_specular are ignored");
   }
@@ -211,12 +215,30 @@ void Loader::readMaterialExtensions(const tinygltf::Material& source, Material& 
   if (const auto* e = extension(map, "KHR_materials_volume")) {
     m.thickness = ranged(get(*e, "thicknessFactor", 0), 0, 1e30, what + " thicknessFactor");
     m.attenuationDistance = ranged(get(*e, "attenuationDistance", 0), 0, 1e30, what + " attenuationDistance");
-    if (e->Has("attenuationColor")) {
-      const auto v = numbers(e->Get("attenuationColor"), 3, what + " attenuationColor");
-      m.attenuationColour = glm::clamp(glm::vec3(v[0], v[1], v[2]), 0.f, 1.f);
-    }
+    readColour(*e, "attenuationColor", 1, m.attenuationColour);
     if (e->Has("thicknessTexture")) warn(what + ": the thickness texture is ignored");
   }
+}
+
+void Loader::limitSpecularColour(Material& m, const std::string& what) {
+  const float brightest = std::max({m.specularColour.x, m.specularColour.y, m.specularColour.z});
+  if (brightest <= 1) return;
+  // Reflectance at normal incidence (KHR_materials_specular), without specularFactor.
+  const double ratio = (m.ior - 1.0) / (m.ior + 1.0);
+  const glm::dvec3 reflected = glm::min(ratio * ratio * glm::dvec3(m.specularColour), 1.0);
+  const double most = std::max({reflected.x, reflected.y, reflected.z});
+  const bool refracts = m.transmission > 0 || m.subsurface;
+  if (refracts)
+    warn(fmt::format("{}: specularColorFactor {} is clamped to 1, since the surface refracts light", what,
+                     brightest));
+  if (refracts || most == 0) {
+    m.specularColour = glm::min(m.specularColour, 1.f);
+    return;
+  }
+  constexpr double mostRatio = 999.0 / 1001;  // of the largest index, 1000
+  const double root = std::min(std::sqrt(most), mostRatio);
+  m.ior = static_cast<float>((1 + root) / (1 - root));
+  m.specularColour = glm::vec3(reflected / most);
 }
 
 Material Loader::readMaterial(const tinygltf::Material& source, const std::string& what) {
@@ -261,6 +283,7 @@ Material Loader::readMaterial(const tinygltf::Material& source, const std::strin
     applyModel(m, readModel(source.extras.Get("limn_material"), place), place);
   }
   applySubsurface(source, m, what);
+  limitSpecularColour(m, what);
   if (source.extras.IsObject() && source.extras.Has("limn_height")) {
     const std::string place = what + " limn_height";
     m.height = readHeight(source.extras.Get("limn_height"), uses, place);

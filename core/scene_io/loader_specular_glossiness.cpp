@@ -13,12 +13,13 @@ namespace limn::scene {
 
 int Loader::readGlossiness(int index, bool another, float glossiness, glm::vec3& meanSpecular,
                            const std::string& what) {
-  auto known = glossyImages_.find({index, glossiness});
+  const int first = imageAt(index, what).first;
+  auto known = glossyImages_.find({first, glossiness});
   if (known == glossyImages_.end()) {
-    std::optional<Image8> image = decodeImage(index, another, what);
+    std::optional<Image8> image = decodeImage(first, another, what);
     if (!image) return kNone;
-    const GlossyImage added = addGlossiness(index, glossiness, *std::move(image));
-    known = glossyImages_.emplace(std::pair(index, glossiness), added).first;
+    const GlossyImage added = addGlossiness(first, glossiness, *std::move(image));
+    known = glossyImages_.emplace(std::pair(first, glossiness), added).first;
   }
   if (known->second.varies) warn(what + ": the mean of its specular colours is used");
   meanSpecular = known->second.meanSpecular;

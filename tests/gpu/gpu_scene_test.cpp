@@ -203,6 +203,22 @@ TEST_F(GpuSceneTest, TextureLevelFollowsTheSharedFormula) {
   }
 }
 
+/// As what a light shines through, or what was resampled for other coordinates.
+TEST_F(GpuSceneTest, PicturesThatNoSurfaceShowsTakeNoMemory) {
+  scene::Scene scene;
+  addMesh(scene, floorPrimitive(1, addMaterial(scene)));
+  const auto textureBytes = [&] {
+    const int64_t before = device().counters().textureBytes;
+    const scene::GpuScene gpuScene(device(), scene);
+    return device().counters().textureBytes - before;
+  };
+  const int64_t without = textureBytes();
+  scene.images.push_back(levelTexture(256));
+  EXPECT_EQ(textureBytes(), without);
+  scene.materials[0].emissiveTexture.image = 0;
+  EXPECT_GT(textureBytes(), without);
+}
+
 TEST_F(GpuSceneTest, MaskedTexelsAreHoles) {
   scene::Scene scene;
   scene::TextureImage image;

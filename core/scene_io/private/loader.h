@@ -94,6 +94,7 @@ class Loader {
   struct ImageSource {
     std::string name, uri;
     int view = kNone;
+    int first = kNone;  ///< of the file's images, the first one that is the same picture
   };
   /// Holds what becomes of an image of specular colours and glossiness.
   struct GlossyImage {
@@ -106,7 +107,7 @@ class Loader {
   void readSceneExtras();
   void readMedium(const tinygltf::Value& medium);
   void readSmoke(const tinygltf::Value& smoke, const std::string& what);
-  void checkResult() const;
+  void checkResult();
 
   // loader_files.cpp
   /// Returns the path of a file that the scene names by a URI, which may be percent-encoded. Throws Error
@@ -157,6 +158,9 @@ class Loader {
   void readMaterials();
   Material readMaterial(const tinygltf::Material& source, const std::string& what);
   void readMaterialExtensions(const tinygltf::Material& source, Material& material, const std::string& what);
+  /// Gives a surface whose specular colour is above 1 one that is not, and the index of refraction with which
+  /// it reflects as much; clamps the colour, with a warning, where light is refracted, too.
+  void limitSpecularColour(Material& material, const std::string& what);
   /// Makes the surface show its base colour whatever lights it (KHR_materials_unlit).
   void applyUnlit(Material& material, const std::string& what);
   // loader_specular_glossiness.cpp

@@ -4,6 +4,7 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <cmath>
 #include <cstdint>
 #include <vector>
@@ -24,6 +25,32 @@ TEST(MipChain, AveragesInLinearLight) {
   image.levels.resize(1);
   buildMipChain(image);
   EXPECT_THAT(image.levels[1].rgba, ElementsAre(128, 255, 0, 128));
+}
+
+/// Of two texels of each grey value: the nearest byte to their mean, for all pairs of values.
+TEST(MipChain, HasTheNearestBytes) {
+  constexpr int values = 256;
+  TextureImage image;
+  image.srgb = true;
+  TextureImage::Level& level = image.levels.emplace_back();
+  level.width = level.height = 2 * values;
+  for (int y = 0; y < level.height; ++y)
+    for (int x = 0; x < level.width; ++x)
+      level.rgba.insert(level.rgba.end(), 4, static_cast<std::uint8_t>(x % 2 == 0 ? x / 2 : y / 2));
+  buildMipChain(image);
+  const auto decoded = [](int byte) {
+    const double v = byte / 255.0;
+    return v <= 0.04045 ? v / 12.92 : std::pow((v + 0.055) / 1.055, 2.4);
+  };
+  double worst = 0;
+  for (int y = 0; y < values; ++y)
+    for (int x = 0; x < values; ++x) {
+      const double mean = 0.5 * (decoded(x) + decoded(y));
+      const double exact = mean <= 0.0031308 ? 12.92 * mean : 1.055 * std::pow(mean, 1 / 2.4) - 0.055;
+      const int byte = image.levels[1].rgba[4 * static_cast<std::size_t>(values * y + x)];
+      worst = std::max(worst, std::abs(byte - 255 * exact));
+    }
+  EXPECT_LE(worst, 0.501) << "half a step, and single precision";
 }
 
 TEST(MipChain, OfOddSizes) {

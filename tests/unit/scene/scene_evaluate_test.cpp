@@ -347,6 +347,16 @@ TEST(SceneEvaluate, EmissiveQuadVariants) {
   }
 }
 
+/// A turn below a scale that differs along its axes.
+TEST(SceneEvaluate, EmissiveQuadsThatTheirNodesSkewLightNothingWithAWarning) {
+  GltfBuilder b = quad(kQuad, kGlow, {{"rotation", {0, 0, std::sin(0.4), std::cos(0.4)}}});
+  EXPECT_EQ(evaluate(loadBuilt(b), 0).lights.size(), 1u);
+  EXPECT_TRUE(loadBuilt(b).warnings.empty());
+  b.node({{"children", {1}}, {"scale", {1, 2, 1}}});
+  EXPECT_TRUE(evaluate(loadBuilt(b), 0).lights.empty());
+  EXPECT_THAT(loadBuilt(b).warnings, testing::ElementsAre(testing::HasSubstr("nodes skew")));
+}
+
 /// An animation may scale a lamp to nothing: it then gives no light, and no other light takes its number.
 TEST(SceneEvaluate, LampsWithoutAreaGiveNoLightAndKeepTheirNumber) {
   for (const std::vector<float>& scale : {std::vector<float>{0, 0, 0}, {1, 0, 1}, {0, 2, 3}}) {

@@ -3,6 +3,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <utility>
 
 #include "glsl/numeric/srgb.glsl"
 #include "tests/support/paths.h"
@@ -204,6 +205,51 @@ TEST(UnlitMaterials, AreTintedByVertexColours) {
   EXPECT_TRUE(scene.materials.at(0).unlit);
   EXPECT_FALSE(scene.materials.at(1).unlit) << "colours are a factor on the base colour alone";
   expectNear(glm::vec3(firstPrimitive(scene).colours.at(0)), colours[0]);
+}
+
+/// A material of that KHR_materials_specular colour and index, and what other extensions say.
+Scene withSpecularColour(const json& colour, double ior, json extensions = json::object()) {
+  GltfBuilder b;
+  extensions["KHR_materials_specular"]["specularColorFactor"] = colour;
+  extensions["KHR_materials_ior"]["ior"] = ior;
+  b.triangle(b.append("materials", {{"extensions", extensions}}));
+  return loadBuilt(b);
+}
+
+/// At normal incidence a surface reflects min(((n - 1) / (n + 1))^2 colour, 1), says the extension; both
+/// renderers hold colours up to 1.
+TEST(SpecularColours, AboveOneReflectAsMuchByAHigherIndex) {
+  const std::pair<glm::vec3, glm::vec3> cases[] = {{{2, 1, 0.5f}, {0.08f, 0.04f, 0.02f}},
+                                                   {{0, 30, 10}, {0, 1, 0.4f}}};
+  for (const auto& [colour, reflected] : cases) {
+    const Scene scene = withSpecularColour(json::array({colour.x, colour.y, colour.z}), 1.5);
+    const Material& m = scene.materials.at(0);
+    for (int c = 0; c < 3; ++c) EXPECT_LE(m.specularColour[c], 1);
+    const float ratio = (m.ior - 1) / (m.ior + 1);
+    expectNear(ratio * ratio * m.specularColour, reflected, reflected.y == 1 ? 0.005f : 1e-6f);
+    EXPECT_TRUE(scene.warnings.empty());
+  }
+  const Material none = withSpecularColour(json::array({5, 1, 1}), 1).materials.at(0);
+  EXPECT_EQ(none.ior, 1) << "reflects nothing";
+  EXPECT_EQ(none.specularColour, glm::vec3(1));
+}
+
+TEST(SpecularColours, AboveOneAreClampedWithAWarningWhereLightIsRefracted) {
+  const Scene glass = withSpecularColour(json::array({2, 1, 0.5}), 1.5,
+                                         {{"KHR_materials_transmission", {{"transmissionFactor", 1}}}});
+  EXPECT_EQ(glass.materials.at(0).ior, 1.5f) << "light is refracted by it";
+  EXPECT_EQ(glass.materials.at(0).specularColour, glm::vec3(1, 1, 0.5f));
+  EXPECT_THAT(glass.warnings, ElementsAre(HasSubstr("material 0: specularColorFactor 2 is clamped to 1")));
+}
+
+TEST(ExtensionColours, OutOfRangeAreClampedWithAWarning) {
+  const Scene scene = withSpecularColour(json::array({-1, 1, 1}), 1.5,
+                                         {{"KHR_materials_volume", {{"attenuationColor", {2, 0.5, 0.25}}}}});
+  const Material& m = scene.materials.at(0);
+  EXPECT_EQ(m.specularColour, glm::vec3(0, 1, 1));
+  EXPECT_EQ(m.attenuationColour, glm::vec3(1, 0.5f, 0.25f));
+  EXPECT_THAT(scene.warnings, ElementsAre(HasSubstr("material 0 specularColorFactor: -1 is clamped to 0"),
+                                          HasSubstr("material 0 attenuationColor: 2 is clamped to 1")));
 }
 
 /// Something that is left out, as a JSON patch of a file, and what is said of it; null: nothing.

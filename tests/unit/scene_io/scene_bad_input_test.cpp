@@ -1,5 +1,4 @@
 // Every broken file ends in one line that names the place.
-#include <chrono>
 #include <limits>
 
 #include "tests/support/png.h"
@@ -44,14 +43,12 @@ TEST(SceneBadInput, DeeplyNested) {
   EXPECT_THAT(loadError(GltfBuilder::toBytes("{\"extras\":" + deep)), HasSubstr("nested deeper"));
 }
 
-TEST(SceneBadInput, HugeVertexCountFailsAtOnce) {
+TEST(SceneBadInput, HugeVertexCountsAreNoLicenceToAllocate) {
   GltfBuilder b;
   b.triangle();
   b.root["accessors"][0]["count"] = 1'000'000'000;
-  const auto start = std::chrono::steady_clock::now();
   EXPECT_THAT(loadError(b.glb()), AllOf(HasSubstr("mesh 0 'm' primitive 0 POSITION (accessor 0)"),
                                         HasSubstr("1000000000 elements"), HasSubstr("do not fit")));
-  EXPECT_LT(std::chrono::steady_clock::now() - start, std::chrono::seconds(1));
   b.root["accessors"][0]["count"] = std::uint64_t{1} << 62;
   EXPECT_THAT(loadError(b.glb()), HasSubstr("too large"));
 }
@@ -184,6 +181,25 @@ TEST(SceneBadInput, NotFiniteTransforms) {
   f.node({{"name", "eye"}, {"camera", 0}, {"translation", {100, 0, 0}}});
   f.node({{"children", {0}}, {"scale", {3e38, 1, 1}}});
   EXPECT_THAT(loadError(f.glb()), HasSubstr("the place of camera 'eye' is not finite"));
+  // Flat triangles, whose depth of 0 hides the infinite scale from their bounds.
+  for (const bool skin : {false, true}) {
+    GltfBuilder g;
+    g.triangle();
+    if (skin) {
+      const int mesh =
+          g.mesh({{"POSITION", g.vec3({{0, 0, 0}, {1, 0, 0}, {0, 1, 0}})},
+                  {"JOINTS_0", g.accessor(std::vector<glm::u8vec4>(3), GltfBuilder::kUbyte, "VEC4")},
+                  {"WEIGHTS_0", g.vec4(std::vector<glm::vec4>(3, glm::vec4(1, 0, 0, 0)))}});
+      g.append("skins", {{"joints", {1}}});
+      g.node({{"scale", {1, 1, 3e38}}});
+      g.node({{"children", {1}}, {"scale", {1, 1, 3e38}}});
+      g.node({{"mesh", mesh}, {"skin", 0}});
+    } else {
+      g.node({{"mesh", 0}, {"scale", {1, 1, 3e38}}});
+      g.node({{"children", {1}}, {"scale", {1, 1, 3e38}}});
+    }
+    EXPECT_THAT(loadError(g.glb()), HasSubstr("extent is not a finite number")) << skin;
+  }
 }
 
 /// Numbers each of which is accepted, and of which something is made that is none.

@@ -207,6 +207,26 @@ TEST(SceneLoad, OneTexturePerImageAndUse) {
   EXPECT_THAT(scene.images[0].levels[0].rgba, ElementsAre(10, 20, 30, 40));
 }
 
+/// Exporters write an image for each texture.
+TEST(SceneLoad, ImagesOfOnePictureAreDecodedOnce) {
+  const std::vector<std::byte> bytes = png(1, 1, {10, 20, 30, 40});
+  GltfBuilder b;
+  const json inside = {{"bufferView", b.view(bytes.data(), bytes.size())}},
+             beside = {
+                 {"uri", "data:image/webp;base64,UklGRh4AAABXRUJQVlA4TBEAAAAvAAAAEAdQiirUoyiBiOh/AAA="}};
+  for (const json& image : {inside, beside, inside, beside}) {
+    const int texture = b.append("textures", {{"source", b.append("images", image)}});
+    b.append("materials", {{"pbrMetallicRoughness", {{"baseColorTexture", {{"index", texture}}}}}});
+  }
+  scene::LoadLimits limits;
+  limits.imageTexels = 2;
+  const Scene loaded = scene::loadMemory(b.glb(), limits);
+  EXPECT_EQ(loaded.images.size(), 2u);
+  std::vector<int> images;
+  for (const scene::Material& m : loaded.materials) images.push_back(m.baseColourTexture.image);
+  EXPECT_THAT(images, ElementsAre(0, 1, 0, 1));
+}
+
 TEST(SceneLoad, DataUri) {
   GltfBuilder b;
   b.root["buffers"] = {{{"byteLength", 3}, {"uri", "data:application/octet-stream;base64,AAEC"}}};
