@@ -1,9 +1,11 @@
 #include "core/brdf/factor_fit.h"
 
 #include <fmt/format.h>
+#include <tbb/parallel_invoke.h>
 
 #include <algorithm>
 #include <cmath>
+#include <utility>
 
 #include "core/base/error.h"
 #include "core/brdf/factor_fit_error.h"
@@ -101,11 +103,22 @@ FactoredBrdf fitBrdf(const Brdf& brdf, const FitSettings& settings) {
     const dvec3 f = brdf(l, v);
     return finite(f) ? glm::max(f, dvec3(0)) : dvec3(0);
   };
-  FactoredBrdf fit = bounded(fitted(brdf, samples, settings, dvec3(0)));
   const dvec3 floor = diffuseFloor(samples);
-  if (settings.floor && settings.factorisation != Factorisation::trilinear && floor != dvec3(0)) {
+  const bool floored =
+      settings.floor && settings.factorisation != Factorisation::trilinear && floor != dvec3(0);
+  FactoredBrdf fit, withFloor;
+  const auto fitAll = [&] { fit = bounded(fitted(brdf, samples, settings, dvec3(0))); };
+  const auto fitRest = [&] {
+    if (floored) withFloor = bounded(fitted(brdf, samples, settings, floor));
+  };
+  if (settings.factorisation == Factorisation::svd) {  // asks the BRDF, which may not be asked by two threads
+    fitAll();
+    fitRest();
+  } else {
+    tbb::parallel_invoke(fitAll, fitRest);
+  }
+  if (floored) {
     const SpherePicture picture(exact);
-    FactoredBrdf withFloor = bounded(fitted(brdf, samples, settings, floor));
     if (errorOf(picture, withFloor) < errorOf(picture, fit)) fit = std::move(withFloor);
   }
   fit.error = errorOf(SpherePicture(exact, 128, PictureLights::heldOut), fit);

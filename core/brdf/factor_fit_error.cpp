@@ -1,5 +1,8 @@
 #include "core/brdf/factor_fit_error.h"
 
+#include <tbb/blocked_range.h>
+#include <tbb/parallel_reduce.h>
+
 #include <algorithm>
 #include <array>
 #include <cmath>
@@ -80,15 +83,23 @@ dvec3 albedoOfResponse(const Response& response, const dvec3& v) {
 }
 
 double largestAlbedo(const Response& response, bool isotropic) {
-  double largest = 0;
-  for (int azimuth = 0; azimuth < (isotropic ? 1 : 8); ++azimuth)
-    for (int degrees = 0; degrees <= 88; degrees += 8) {
-      const double theta = degrees * std::numbers::pi / 180, phi = azimuth * std::numbers::pi / 4;
-      const dvec3 albedo = albedoOfResponse(
-          response, {std::sin(theta) * std::cos(phi), std::sin(theta) * std::sin(phi), std::cos(theta)});
-      largest = std::max({largest, albedo.x, albedo.y, albedo.z});
-    }
-  return largest;
+  constexpr int kAngles = 12, kDegrees = 8;  // up to 88 degrees
+  const auto of = [&](int view) {
+    const double theta = view % kAngles * kDegrees * std::numbers::pi / 180,
+                 phi = view / kAngles * std::numbers::pi / 4;
+    return albedoOfResponse(
+        response, {std::sin(theta) * std::cos(phi), std::sin(theta) * std::sin(phi), std::cos(theta)});
+  };
+  return tbb::parallel_reduce(
+      tbb::blocked_range<int>(0, kAngles * (isotropic ? 1 : 8)), 0.0,
+      [&](const tbb::blocked_range<int>& views, double largest) {
+        for (int view = views.begin(); view < views.end(); ++view) {
+          const dvec3 albedo = of(view);
+          largest = std::max({largest, albedo.x, albedo.y, albedo.z});
+        }
+        return largest;
+      },
+      [](double a, double b) { return std::max(a, b); });
 }
 
 }  // namespace limn::brdf

@@ -43,6 +43,7 @@ LIMN_API glm::dvec3 albedoOfResponse(const Response& response, const glm::dvec3&
 
 /// Returns the largest directional albedo of any channel, over views from head-on to 88 degrees at eight
 /// azimuths around the normal, as no symmetry is taken for granted (one where the response is `isotropic`).
+/// Several threads ask the response at once.
 LIMN_API double largestAlbedo(const Response& response, bool isotropic);
 
 }  // namespace limn::brdf

@@ -1,12 +1,14 @@
 #include "core/brdf/model_brdf.h"
 
-#include <algorithm>
-#include <iterator>
-#include <list>
-#include <mutex>
-#include <span>
-#include <utility>
+#include <tbb/parallel_for.h>
+#include <tbb/task_arena.h>
+#include <xxhash.h>
 
+#include <algorithm>
+#include <cstdint>
+
+#include "core/base/error.h"
+#include "core/base/kept_results.h"
 #include "glsl/materials/model.glsl"
 
 namespace limn::brdf {
@@ -27,51 +29,35 @@ bool sameNumbers(const glsl::MaterialModel& a, const glsl::MaterialModel& b) {
          a.nodes == b.nodes;
 }
 
-/// Is a fit, and what it is of. A measured model's table is a copy, which outlives the scene.
-struct KeptFit {
+/// Tells fits apart.
+struct FitKey {
   glsl::MaterialModel model;
-  std::vector<glm::vec3> table;
+  uint64_t low = 0, high = 0;  ///< hash of a measured model's table
   FitSettings settings;
-  std::shared_ptr<const FactoredBrdf> fit;
 
-  std::size_t bytes() const {
-    std::size_t values = table.size();
-    for (const FactorTable& factor : fit->tables) values += factor.texels.size();
-    return values * sizeof(glm::vec3);
+  bool operator==(const FitKey& other) const {
+    return low == other.low && high == other.high && settings == other.settings &&
+           sameNumbers(model, other.model);
   }
 };
 
-/// Holds the fits of this process, the one that was asked for last first.
-class KeptFits {
- public:
-  /// Returns null where there is none of these.
-  std::shared_ptr<const FactoredBrdf> find(const glsl::MaterialModel& model, std::span<const glm::vec3> table,
-                                           const FitSettings& settings) {
-    const std::lock_guard lock(mutex_);
-    const auto found = std::ranges::find_if(fits_, [&](const KeptFit& kept) {
-      return kept.settings == settings && sameNumbers(kept.model, model) &&
-             std::ranges::equal(kept.table, table);
-    });
-    if (found == fits_.end()) return nullptr;
-    fits_.splice(fits_.begin(), fits_, found);
-    return found->fit;
-  }
-  void add(KeptFit made) {
-    const std::lock_guard lock(mutex_);
-    fits_.push_front(std::move(made));
-    std::size_t bytes = 0;
-    for (auto fit = std::next(fits_.begin()); fit != fits_.end(); ++fit) {
-      bytes += fit->bytes();
-      if (bytes <= kKeptFitBytes) continue;
-      fits_.erase(fit, fits_.end());
-      return;
-    }
-  }
+FitKey keyOf(const glsl::MaterialModel& model, const std::vector<glm::vec3>& measured,
+             const FitSettings& settings) {
+  FitKey key{.model = model, .settings = settings};
+  if (model.kind != glsl::model_measured) return key;
+  const std::span<const glm::vec3> table = tableOf(model, measured);
+  const XXH128_hash_t hash = XXH3_128bits(table.data(), table.size_bytes());
+  key.low = hash.low64;
+  key.high = hash.high64;
+  return key;
+}
 
- private:
-  std::mutex mutex_;
-  std::list<KeptFit> fits_;
-};
+/// Returns what a fit takes here, where texels are floats whatever their format.
+std::size_t memoryOf(const FactoredBrdf& fit) {
+  std::size_t texels = 0;
+  for (const FactorTable& table : fit.tables) texels += table.texels.size();
+  return texels * sizeof(glm::vec3);
+}
 
 }  // namespace
 
@@ -91,13 +77,31 @@ bool sameModel(const glsl::MaterialModel& a, const glsl::MaterialModel& b,
 std::shared_ptr<const FactoredBrdf> fitModel(const glsl::MaterialModel& model,
                                              const std::vector<glm::vec3>& measured,
                                              const FitSettings& settings) {
-  static KeptFits kept;
-  std::span<const glm::vec3> table;
-  if (model.kind == glsl::model_measured) table = tableOf(model, measured);
-  if (auto found = kept.find(model, table, settings)) return found;
-  auto fit = std::make_shared<const FactoredBrdf>(fitBrdf(modelBrdf(model, measured), settings));
-  kept.add({model, {table.begin(), table.end()}, settings, fit});
-  return fit;
+  static KeptResults<FitKey, FactoredBrdf> kept(kKeptFitBytes, memoryOf);
+  return kept.of(keyOf(model, measured, settings),
+                 [&] { return fitBrdf(modelBrdf(model, measured), settings); });
+}
+
+std::vector<std::shared_ptr<const FactoredBrdf>> fitModels(std::span<const glsl::MaterialModel> models,
+                                                           const std::vector<glm::vec3>& measured,
+                                                           const FitSettings& settings) {
+  std::vector<std::shared_ptr<const FactoredBrdf>> fits(models.size());
+  const auto fit = [&](std::size_t i) {
+    try {
+      // Else a thread that waits for a part of this fit would begin others meanwhile, one within another.
+      tbb::this_task_arena::isolate([&] { fits[i] = fitModel(models[i], measured, settings); });
+    } catch (const UsageError&) {
+      throw;
+    } catch (const Error&) {
+      // black
+    }
+  };
+  // One after the other where each takes up to 144 MB meanwhile.
+  if (settings.factorisation == Factorisation::svd)
+    for (std::size_t i = 0; i < fits.size(); ++i) fit(i);
+  else
+    tbb::parallel_for(std::size_t{0}, fits.size(), fit);
+  return fits;
 }
 
 }  // namespace limn::brdf

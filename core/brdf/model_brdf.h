@@ -5,6 +5,7 @@
 #include <cstddef>
 #include <glm/glm.hpp>
 #include <memory>
+#include <span>
 #include <vector>
 
 #include "core/base/export.h"
@@ -32,5 +33,11 @@ inline constexpr std::size_t kKeptFitBytes = std::size_t{64} << 20;
 LIMN_API std::shared_ptr<const FactoredBrdf> fitModel(const glsl::MaterialModel& model,
                                                       const std::vector<glm::vec3>& measured,
                                                       const FitSettings& settings);
+
+/// Returns the same of several models, which are fitted side by side; null for those that reflect nothing
+/// that could be fitted. Throws UsageError as fitBrdf() does.
+LIMN_API std::vector<std::shared_ptr<const FactoredBrdf>> fitModels(
+    std::span<const glsl::MaterialModel> models, const std::vector<glm::vec3>& measured,
+    const FitSettings& settings);
 
 }  // namespace limn::brdf

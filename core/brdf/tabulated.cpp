@@ -1,12 +1,12 @@
 #include "core/brdf/tabulated.h"
 
 #include <algorithm>
-#include <array>
 #include <cmath>
 #include <cstddef>
 #include <numbers>
 
 #include "core/base/error.h"
+#include "core/brdf/private/fill_unknown.h"
 #include "glsl/materials/measured.glsl"
 
 namespace limn::brdf {
@@ -25,28 +25,20 @@ bool isNegative(const glm::vec3& f) {
   return f.x < 0 || f.y < 0 || f.z < 0;
 }
 
-/// The neighbours of a node along the axes: up to six, of which those across the seam of phiD are two.
-class Neighbours {
- public:
-  Neighbours(const glm::ivec3& size, std::size_t node) {
-    const auto m = static_cast<std::size_t>(size.y), p = static_cast<std::size_t>(size.z);
-    const std::size_t k = node % p, j = node / p % m, i = node / p / m;
-    const std::size_t row = node - k;
-    if (i > 0) add(node - p * m);
-    if (i + 1 < static_cast<std::size_t>(size.x)) add(node + p * m);
-    if (j > 0) add(node - p);
-    if (j + 1 < m) add(node + p);
-    add(row + (k + 1) % p);
-    add(row + (k + p - 1) % p);
-  }
-  const std::size_t* begin() const { return nodes_.data(); }
-  const std::size_t* end() const { return nodes_.data() + count_; }
-
- private:
-  void add(std::size_t node) { nodes_[count_++] = node; }
-  std::array<std::size_t, 6> nodes_{};
-  std::size_t count_ = 0;
-};
+/// Returns the nodes beside one along the axes: up to six, of which those across the seam of phiD are two.
+GridNeighbours neighboursOf(const glm::ivec3& size, std::size_t node) {
+  const auto m = static_cast<std::size_t>(size.y), p = static_cast<std::size_t>(size.z);
+  const std::size_t k = node % p, j = node / p % m, i = node / p / m;
+  const std::size_t row = node - k;
+  GridNeighbours beside;
+  if (i > 0) beside.add(node - p * m);
+  if (i + 1 < static_cast<std::size_t>(size.x)) beside.add(node + p * m);
+  if (j > 0) beside.add(node - p);
+  if (j + 1 < m) beside.add(node + p);
+  beside.add(row + (k + 1) % p);
+  beside.add(row + (k + p - 1) % p);
+  return beside;
+}
 
 }  // namespace
 
@@ -75,40 +67,10 @@ glm::vec3 TabulatedBrdf::evaluate(const glm::vec3& l, const glm::vec3& v) const 
 }
 
 bool fillInvalid(TabulatedBrdf& table) {
-  std::vector<glm::vec3>& values = table.values;
-  std::vector<bool> queued(values.size());
-  std::vector<std::size_t> front, next;
-  const auto queueAround = [&](std::size_t node) {
-    for (const std::size_t other : Neighbours(table.size, node)) {
-      if (!isNegative(values[other]) || queued[other]) continue;
-      queued[other] = true;
-      next.push_back(other);
-    }
-  };
-  bool any = false;
-  for (std::size_t node = 0; node < values.size(); ++node) {
-    if (isNegative(values[node])) continue;
-    any = true;
-    queueAround(node);
-  }
-  std::vector<glm::vec3> means;
-  while (!next.empty()) {
-    front.swap(next);
-    next.clear();
-    means.clear();
-    for (const std::size_t node : front) {
-      glm::vec3 sum(0);
-      int count = 0;
-      for (const std::size_t other : Neighbours(table.size, node)) {
-        if (isNegative(values[other])) continue;
-        sum += values[other];
-        ++count;
-      }
-      means.push_back(sum / static_cast<float>(count));
-    }
-    for (std::size_t i = 0; i < front.size(); ++i) values[front[i]] = means[i];
-    for (const std::size_t node : front) queueAround(node);
-  }
+  std::vector<char> known;
+  for (const glm::vec3& value : table.values) known.push_back(isNegative(value) ? 0 : 1);
+  const bool any = std::ranges::find(known, 1) != known.end();
+  fillUnknown(table.values, known, [&](std::size_t node) { return neighboursOf(table.size, node); });
   return any;
 }
 

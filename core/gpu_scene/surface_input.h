@@ -21,6 +21,7 @@ struct SurfaceAnswer {
   std::string file;
   std::map<std::string, std::string> defines;  ///< that it needs; names that no pass uses itself
   std::vector<Texture> textures;
+  int steps = 0;  ///< that the loops of material_response() take, at most: software renderers count them
 };
 
 /// Provides what a pass needs if its shaders include glsl/surface/surface_response.glsl, besides the frame

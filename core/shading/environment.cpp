@@ -5,12 +5,10 @@
 
 #include <algorithm>
 #include <cmath>
-#include <list>
-#include <mutex>
 #include <numbers>
-#include <utility>
 
 #include "core/base/error.h"
+#include "core/base/kept_results.h"
 #include "core/scene/bilinear.h"
 #include "glsl/light/environment.glsl"
 #include "glsl/light/prefiltered.glsl"
@@ -32,8 +30,17 @@ constexpr float kLargestHalf = 65504;
 /// the result.
 enum class Rows { inside, onPoles };
 
-const vec3& texel(const FilteredMap& map, int x, int y) {
+/// Map: a FilteredMap or an environment, here and below.
+template <class Map>
+const vec3& texel(const Map& map, int x, int y) {
   return map.texels[static_cast<size_t>(y) * static_cast<size_t>(map.width) + static_cast<size_t>(x)];
+}
+
+/// The map's value at (u, v), as limn::shading::bilinear() says.
+template <class Map>
+vec3 between(const Map& map, vec2 uv) {
+  return scene::bilinear({map.width, map.height}, scene::Wrap::repeat, scene::Wrap::clamp, uv,
+                         [&](int x, int y) { return texel(map, x, y); });
 }
 
 vec2 texelCentre(int x, int y, int width, int height) {
@@ -57,7 +64,8 @@ FilteredMap makeMap(int width, Rows rows, const Function& function) {
 }
 
 /// Mean radiance over each texel, weighted by solid angle.
-FilteredMap resampled(const FilteredMap& source, int width, Rows rows) {
+template <class Map>
+FilteredMap resampled(const Map& source, int width, Rows rows) {
   const int height = std::max(width / 2, 1);
   const int across = std::max(1, (source.width + width - 1) / width);
   const int down = std::max(1, (source.height + height - 1) / height);
@@ -71,7 +79,7 @@ FilteredMap resampled(const FilteredMap& source, int width, Rows rows) {
         const vec2 uv = centre + offset * vec2(cell, 2 * cell);
         const double weight =
             std::abs(std::sin(std::numbers::pi * static_cast<double>(uv.y))) + 1e-6;  // on the poles
-        sum += weight * dvec3(bilinear(source, uv));
+        sum += weight * dvec3(between(source, uv));
         weights += weight;
       }
     }
@@ -185,48 +193,30 @@ void requireMap(const scene::Environment& environment) {
   if (!environment) throw Error("environment: there is no map to filter");
 }
 
-FilteredMap sourceOf(const scene::Environment& environment) {
-  requireMap(environment);
-  return {environment.width, environment.height, environment.texels};
+/// Tells an environment's map from others.
+struct MapKey {
+  int width, height;
+  uint64_t low, high;  ///< hash of the texels
+  bool operator==(const MapKey&) const = default;
+};
+
+MapKey keyOf(const scene::Environment& environment) {
+  const XXH128_hash_t hash =
+      XXH3_128bits(environment.texels.data(), environment.texels.size() * sizeof(vec3));
+  return {environment.width, environment.height, hash.low64, hash.high64};
 }
 
-/// Holds what the last maps became, the one that was asked for last first.
-template <class Filtered>
-class KeptMaps {
- public:
-  template <class Filter>
-  std::shared_ptr<const Filtered> of(const scene::Environment& environment, const Filter& filter) {
-    const XXH128_hash_t hash =
-        XXH3_128bits(environment.texels.data(), environment.texels.size() * sizeof(vec3));
-    const Map map{environment.width, environment.height, hash.low64, hash.high64};
-    if (auto found = find(map)) return found;
-    auto made = std::make_shared<const Filtered>(filter(environment));
-    const std::lock_guard lock(mutex_);
-    kept_.emplace_front(map, made);
-    if (kept_.size() > kMost) kept_.pop_back();
-    return made;
-  }
+/// The most memory of what is kept of either kind beside the last one: three filtered environments.
+constexpr size_t kKeptMapBytes = size_t{8} << 20;
 
- private:
-  static constexpr size_t kMost = 4;  // half a MiB each
-  struct Map {
-    int width, height;
-    uint64_t low, high;  ///< hash of the texels
-    bool operator==(const Map&) const = default;
-  };
-  using Kept = std::pair<Map, std::shared_ptr<const Filtered>>;
-
-  std::shared_ptr<const Filtered> find(const Map& map) {
-    const std::lock_guard lock(mutex_);
-    const auto found = std::ranges::find(kept_, map, &Kept::first);
-    if (found == kept_.end()) return nullptr;
-    kept_.splice(kept_.begin(), kept_, found);
-    return found->second;
-  }
-
-  std::mutex mutex_;
-  std::list<Kept> kept_;
-};
+size_t bytesOf(const FilteredMap& map) {
+  return map.texels.size() * sizeof(vec3);
+}
+size_t bytesOf(const FilteredEnvironment& environment) {
+  size_t sum = bytesOf(environment.irradiance);
+  for (const FilteredMap& level : environment.radiance) sum += bytesOf(level);
+  return sum;
+}
 
 /// One of the texels that a coarser one covers, along one axis.
 struct Share {
@@ -272,8 +262,7 @@ FilteredMap halved(int width, int height, const std::vector<vec3>& texels) {
 }  // namespace
 
 vec3 bilinear(const FilteredMap& map, vec2 uv) {
-  return scene::bilinear({map.width, map.height}, scene::Wrap::repeat, scene::Wrap::clamp, uv,
-                         [&](int x, int y) { return texel(map, x, y); });
+  return between(map, uv);
 }
 
 vec3 FilteredMap::sample(const vec3& direction) const {
@@ -288,16 +277,16 @@ vec3 FilteredEnvironment::filtered(const vec3& direction, float alpha) const {
 }
 
 FilteredEnvironment filterEnvironment(const scene::Environment& environment) {
-  const FilteredMap source = sourceOf(environment);
-  std::vector<FilteredMap> chain{resampled(source, glsl::environment_filtered_width, Rows::inside)};
+  requireMap(environment);
+  std::vector<FilteredMap> chain{resampled(environment, glsl::environment_filtered_width, Rows::inside)};
   while (chain.back().width > 8) {
     chain.push_back(resampled(chain.back(), chain.back().width / 2, Rows::inside));
   }
 
   FilteredEnvironment result;
-  result.irradiance = convolvedOverHemisphere(resampled(source, kIrradianceSourceWidth, Rows::inside),
+  result.irradiance = convolvedOverHemisphere(resampled(environment, kIrradianceSourceWidth, Rows::inside),
                                               [](float cosine) { return cosine; });
-  result.radiance.push_back(resampled(source, glsl::environment_filtered_width, Rows::onPoles));
+  result.radiance.push_back(resampled(environment, glsl::environment_filtered_width, Rows::onPoles));
   for (int level = 1; level < glsl::environment_levels; ++level) {
     result.radiance.push_back(convolvedWithLobe(chain, level));
   }
@@ -305,18 +294,19 @@ FilteredEnvironment filterEnvironment(const scene::Environment& environment) {
 }
 
 FilteredMap filterGrazing(const scene::Environment& environment) {
-  return convolvedOverHemisphere(resampled(sourceOf(environment), kIrradianceSourceWidth, Rows::inside),
+  requireMap(environment);
+  return convolvedOverHemisphere(resampled(environment, kIrradianceSourceWidth, Rows::inside),
                                  [](float cosine) { return cosine * glsl::schlick_weight(cosine); });
 }
 
 std::shared_ptr<const FilteredEnvironment> keptEnvironment(const scene::Environment& environment) {
-  static KeptMaps<FilteredEnvironment> kept;
-  return kept.of(environment, filterEnvironment);
+  static KeptResults<MapKey, FilteredEnvironment> kept(kKeptMapBytes, bytesOf);
+  return kept.of(keyOf(environment), [&] { return filterEnvironment(environment); });
 }
 
 std::shared_ptr<const FilteredMap> keptGrazing(const scene::Environment& environment) {
-  static KeptMaps<FilteredMap> kept;
-  return kept.of(environment, filterGrazing);
+  static KeptResults<MapKey, FilteredMap> kept(kKeptMapBytes, bytesOf);
+  return kept.of(keyOf(environment), [&] { return filterGrazing(environment); });
 }
 
 std::vector<FilteredMap> radianceLevels(const scene::Environment& environment) {

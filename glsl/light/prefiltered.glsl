@@ -5,8 +5,9 @@
 // Maps are layers of a 2D array, in the environment's own frame. A dual paraboloid map has two layers of size x size, the
 // hemispheres around +z and -z; the discs end one texel before the edge, and the texels beyond the rim hold the directions
 // that follow there, so that bilinear lookups need no other layer. An equirectangular map has one layer of 2 size x size,
-// rows from pole to pole: as many texels. Places are texture coordinates and the layer; `texel` is a position in texels,
-// whose centres lie at halves.
+// rows from pole to pole: as many texels. Where its size is no power of two, levels of it may have one column more than twice
+// their rows, since both are halved and rounded down. Places are texture coordinates and the layer; `texel` is a position in
+// texels, whose centres lie at halves.
 #ifndef LIMN_PREFILTERED_GLSL
 #define LIMN_PREFILTERED_GLSL
 #include "glsl/light/environment.glsl"
@@ -58,13 +59,14 @@ LIMN_FN vec3 polar_map_place(vec3 direction, int size) {
 // Radians from the pole +y; texels of the first and last row reach beyond the poles.
 LIMN_FN float polar_map_angle(float row, int size) { return pi * (row - 0.5f) / float(size - 1); }
 
-LIMN_FN vec3 polar_map_direction(vec2 texel, int size) {
-  return equirectangular_direction(vec2(texel.x / float(2 * size), polar_map_angle(texel.y, size) * inverse_pi));
+// size: columns and rows, here and in polar_map_density().
+LIMN_FN vec3 polar_map_direction(vec2 texel, ivec2 size) {
+  return equirectangular_direction(vec2(texel.x / float(size.x), polar_map_angle(texel.y, size.y) * inverse_pi));
 }
 
-LIMN_FN float polar_map_density(vec2 texel, int size) {
-  float area = pi * pi / (float(size) * float(size - 1));
-  return area * max(abs(sin(polar_map_angle(texel.y, size))), 1e-6f);
+LIMN_FN float polar_map_density(vec2 texel, ivec2 size) {
+  float area = 2.0f * pi * pi / (float(size.x) * float(size.y - 1));
+  return area * max(abs(sin(polar_map_angle(texel.y, size.y))), 1e-6f);
 }
 
 // --- Filtering ---
@@ -155,23 +157,24 @@ vec3 prefiltered_place(vec3 direction, int size) {
 #endif
 }
 
-vec3 prefiltered_texel_direction(vec2 texel, int layer, int size) {
+// size: columns and rows of the level, here and in prefiltered_density().
+vec3 prefiltered_texel_direction(vec2 texel, int layer, ivec2 size) {
 #if PREFILTERED_PARABOLOID
-  return dual_paraboloid_direction(texel, layer, size);
+  return dual_paraboloid_direction(texel, layer, size.y);
 #else
   return polar_map_direction(texel, size);
 #endif
 }
 
-float prefiltered_density(vec2 texel, int size) {
+float prefiltered_density(vec2 texel, ivec2 size) {
 #if PREFILTERED_PARABOLOID
-  return dual_paraboloid_density(texel, size);
+  return dual_paraboloid_density(texel, size.y);
 #else
   return polar_map_density(texel, size);
 #endif
 }
 
-// The density around a direction, of an equirectangular map the mean.
+// The density of a map of `size` rows around a direction, of an equirectangular one the mean.
 float prefiltered_density_towards(vec3 direction, int size) {
 #if PREFILTERED_PARABOLOID
   return dual_paraboloid_density_towards(direction, size);

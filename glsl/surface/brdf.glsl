@@ -133,12 +133,6 @@ LIMN_FN vec3 brdf(SurfaceBrdf s, vec3 n, vec3 v, vec3 l) {
   return s.diffuse * parts.diffuse + parts.specular;
 }
 
-// Density over solid angle of normals of sample_visible_normal() with equal slopes: G1(v) max(v.h, 0) D(h) / n.v (Heitz
-// 2018, equation 3).
-LIMN_FN float ggx_visible_pdf(float n_dot_v, float n_dot_h, float sine2, float v_dot_h, float alpha) {
-  return ggx_masking(n_dot_v, alpha) * max(v_dot_h, 0.0f) * ggx_distribution(n_dot_h, sine2, alpha) / n_dot_v;
-}
-
 // Probability of choosing the specular lobe: its share of the reflectance at n.v, 0 or 1 where one part is
 // absent (and 0 where v lies below the horizon of n, from where no normals are visible).
 LIMN_FN float brdf_specular_probability(SurfaceBrdf s, float n_dot_v) {

@@ -136,6 +136,22 @@ factored::FitChoice described(const ParameterValues& parameters) {
   return choice;
 }
 
+/// Returns the steps of the loop over products in response.glsl, which is left at the head of a step of its
+/// own.
+int loopSteps(Factorisation product, int layers) {
+  switch (product) {
+    case Factorisation::dfg:
+    case Factorisation::pqp:
+    case Factorisation::svd:
+      return layers + 1;
+    case Factorisation::pqp_disc:
+    case Factorisation::dfg_disc:
+      return layers / 2 + 1;
+    default:
+      return 0;
+  }
+}
+
 /// Is a texture of the tables of one kind of product.
 struct TableTexture {
   Factorisation product;
@@ -154,10 +170,10 @@ constexpr TableTexture kAnalyticTextures[] = {
 /// Returns the mask, by kind of model, of analytic tables that there are.
 int kindsOf(const factored::MaterialFits& fits) {
   int kinds = 0;
-  for (const brdf::FactoredBrdf& fit : fits.fits)
-    kinds |= 1 << (fit.factorisation == Factorisation::slopes   ? glsl::model_ward
-                   : fit.factorisation == Factorisation::fibres ? glsl::model_banks
-                                                                : glsl::model_torrance_sparrow);
+  for (const auto& fit : fits.fits)
+    kinds |= 1 << (fit->factorisation == Factorisation::slopes   ? glsl::model_ward
+                   : fit->factorisation == Factorisation::fibres ? glsl::model_banks
+                                                                 : glsl::model_torrance_sparrow);
   return kinds;
 }
 
@@ -192,8 +208,9 @@ class FactoredBrdf : public Technique {
     answer.defines = {{"FACTORED_FIT", fmt::format("FACTORED_{}", product)},
                       {"FACTORED_COMPLETE", fits.complete(inputs.scene) ? "1" : "0"},
                       {"FACTORED_WARPED", choice.fit.warped ? "true" : "false"},
-                      {"FACTORED_LAYERS", fmt::format("{}", fits.fits.front().tables.front().depth)}};
+                      {"FACTORED_LAYERS", fmt::format("{}", fits.fits.front()->tables.front().depth)}};
     if (choice.analytic) answer.defines["FACTORED_KINDS"] = fmt::format("{}", kindsOf(fits));
+    answer.steps = loopSteps(choice.fit.factorisation, fits.fits.front()->tables.front().depth);
     upload(inputs.gpuScene.device(), graph, choice, fits, answer);
     return answer;
   }
@@ -203,7 +220,7 @@ class FactoredBrdf : public Technique {
               const factored::MaterialFits& fits, scene::SurfaceAnswer& answer) {
     std::vector<TableTexture> textures(std::begin(kAnalyticTextures), std::end(kAnalyticTextures));
     if (!choice.analytic) {
-      textures.resize(fits.fits.front().tables.size());
+      textures.resize(fits.fits.front()->tables.size());
       for (TableTexture& texture : textures) texture.product = choice.fit.factorisation;
     }
     tables_.clear();

@@ -1,10 +1,12 @@
 #include "techniques/factored_brdf/material_fits.h"
 
 #include <algorithm>
+#include <cstddef>
+#include <iterator>
+#include <memory>
 #include <numbers>
 #include <optional>
 
-#include "core/base/error.h"
 #include "core/brdf/anisotropic_tables.h"
 #include "core/brdf/model_brdf.h"
 #include "glsl/materials/model.glsl"
@@ -84,25 +86,24 @@ brdf::FactoredBrdf analyticTables(const glsl::MaterialModel& model, const FitCho
   }
 }
 
-/// Returns the tables of a material; nothing where there is nothing to fit.
-std::optional<brdf::FactoredBrdf> fitted(const scene::Scene& scene, const scene::Material& material,
-                                         const FitChoice& choice) {
-  if (choice.analytic) return analyticTables(*material.model, choice);
-  try {
-    return *brdf::fitModel(*material.model, scene.measured, choice.fit);
-  } catch (const UsageError&) {
-    throw;
-  } catch (const Error&) {
-    return std::nullopt;  // black
-  }
+using Tables = std::vector<std::shared_ptr<const brdf::FactoredBrdf>>;
+
+/// Returns the tables of models that the choice can hold; null where there is nothing to fit.
+Tables tablesOf(const std::vector<glsl::MaterialModel>& models, const scene::Scene& scene,
+                const FitChoice& choice) {
+  if (!choice.analytic) return brdf::fitModels(models, scene.measured, choice.fit);
+  Tables tables;
+  for (const glsl::MaterialModel& model : models)
+    tables.push_back(std::make_shared<const brdf::FactoredBrdf>(analyticTables(model, choice)));
+  return tables;
 }
 
 }  // namespace
 
 std::vector<const brdf::FactoredBrdf*> MaterialFits::of(Factorisation kind) const {
   std::vector<const brdf::FactoredBrdf*> result;
-  for (const brdf::FactoredBrdf& fit : fits)
-    if (fit.factorisation == kind) result.push_back(&fit);
+  for (const auto& fit : fits)
+    if (fit->factorisation == kind) result.push_back(fit.get());
   return result;
 }
 
@@ -113,41 +114,48 @@ bool MaterialFits::complete(const scene::Scene& scene) const {
 }
 
 MaterialFits fitMaterials(const scene::Scene& scene, const FitChoice& choice) {
-  MaterialFits result;
-  std::vector<glsl::MaterialModel> models;  // of each fit
+  std::vector<glsl::MaterialModel> models;         // that tables can hold, equal ones once
+  std::vector<std::optional<std::ptrdiff_t>> own;  // of each material: which of them it has
   for (const scene::Material& material : scene.materials) {
+    std::optional<std::ptrdiff_t>& index = own.emplace_back();
+    if (!material.model || !reasonAgainst(*material.model, choice).empty()) continue;
+    const auto found = std::ranges::find_if(models, [&](const glsl::MaterialModel& m) {
+      return choice.analytic ? sameAnalytic(m, *material.model)
+                             : brdf::sameModel(m, *material.model, scene.measured);
+    });
+    index = found - models.begin();
+    if (found == models.end()) models.push_back(*material.model);
+  }
+  const Tables tables = tablesOf(models, scene, choice);
+
+  MaterialFits result;
+  for (size_t i = 0; i < own.size(); ++i) {
+    const scene::Material& material = scene.materials[i];
     MaterialFits::Row& row = result.rows.emplace_back();
     if (!material.model) continue;
     const glsl::MaterialModel& model = *material.model;
-    if (const std::string reason = reasonAgainst(model, choice); !reason.empty()) {
-      result.exact.push_back({material.name, reason});
+    if (!own[i]) {
+      result.exact.push_back({material.name, reasonAgainst(model, choice)});
       continue;
     }
-    auto found = std::ranges::find_if(models, [&](const glsl::MaterialModel& m) {
-      return choice.analytic ? sameAnalytic(m, model) : brdf::sameModel(m, model, scene.measured);
-    });
-    if (found == models.end()) {
-      std::optional<brdf::FactoredBrdf> fit = fitted(scene, material, choice);
-      if (!fit) {
-        result.exact.push_back({material.name, "it reflects nothing that could be fitted"});
-        continue;
-      }
-      result.fits.push_back(std::move(*fit));
-      found = models.insert(models.end(), model);
+    const auto fit = tables.begin() + *own[i];
+    if (!*fit) {
+      result.exact.push_back({material.name, "it reflects nothing that could be fitted"});
+      continue;
     }
-    const auto own = result.fits.begin() + (found - models.begin());
-    const brdf::FactoredBrdf& fit = *own;
     // Those before it of the same kind.
-    row.fit = static_cast<int>(std::count_if(result.fits.begin(), own, [&](const brdf::FactoredBrdf& other) {
-      return other.factorisation == fit.factorisation;
+    row.fit = static_cast<int>(std::count_if(tables.begin(), fit, [&](const auto& other) {
+      return other && other->factorisation == (*fit)->factorisation;
     }));
-    row.scale = vec3(fit.scale);
-    row.floor = vec3(fit.floor);
+    row.scale = vec3((*fit)->scale);
+    row.floor = vec3((*fit)->floor);
     if (choice.analytic && model.kind != glsl::model_banks) {
       row.scale *= model.ks;
       row.floor = model.kd * std::numbers::inv_pi_v<float>;
     }
   }
+  std::ranges::copy_if(tables, std::back_inserter(result.fits),
+                       [](const auto& fit) { return fit != nullptr; });
   return result;
 }
 

@@ -1,6 +1,7 @@
 // Declares the tables that the material models of a scene are looked up in.
 #pragma once
 
+#include <memory>
 #include <string>
 #include <vector>
 
@@ -29,8 +30,9 @@ struct MaterialFits {
   struct Exact {
     std::string material, reason;
   };
-  std::vector<brdf::FactoredBrdf> fits;  ///< of all materials with a model, equal ones once
-  std::vector<Row> rows;                 ///< of each material of the scene
+  /// Of all materials with a model, equal ones once.
+  std::vector<std::shared_ptr<const brdf::FactoredBrdf>> fits;
+  std::vector<Row> rows;  ///< of each material of the scene
   std::vector<Exact> exact;
 
   /// Returns those of one kind of product, in the order that rows count them.
@@ -39,8 +41,8 @@ struct MaterialFits {
   bool complete(const scene::Scene& scene) const;
 };
 
-/// Returns the tables. A numerical fit takes about a second for each different material; equal ones share it,
-/// and the process keeps it for the next graph (brdf::fitModel).
+/// Returns the tables. A numerical fit takes about a second for each different material, several at once;
+/// equal ones share it, and the process keeps it for the next graph (brdf::fitModel).
 /// Materials with a model have a row without a fit where the choice cannot hold them: `analytic` all but
 /// Torrance-Sparrow, Ward and Banks after Stalling, dfg, pqp, tables and trilinear those that turn with the
 /// tangent, and every fit those that are black.

@@ -17,7 +17,7 @@ void main() {
   ivec3 at = ivec3(gl_GlobalInvocationID);
   ivec3 extent = imageSize(filtered);
   if (any(greaterThanEqual(at, extent))) return;
-  Frame around = frame_around(prefiltered_texel_direction(vec2(at.xy) + 0.5, at.z, extent.y));
+  Frame around = frame_around(prefiltered_texel_direction(vec2(at.xy) + 0.5, at.z, extent.xy));
   int size = textureSize(source, 0).y;
   int last = textureQueryLevels(source) - 1;
   vec3 sum = vec3(0.0);

@@ -15,7 +15,7 @@ void main() {
   ivec3 at = ivec3(gl_GlobalInvocationID);
   ivec3 extent = imageSize(irradiance);
   if (any(greaterThanEqual(at, extent))) return;
-  vec3 normal = prefiltered_texel_direction(vec2(at.xy) + 0.5, at.z, extent.y);
+  vec3 normal = prefiltered_texel_direction(vec2(at.xy) + 0.5, at.z, extent.xy);
   ivec2 parts = ivec2(columns_of_texel, rows_of_texel);
   ivec2 points = parts * textureSize(environment_levels_map, source_level);
   vec3 sum = vec3(0.0);

@@ -168,8 +168,8 @@ class PrefilteredEnvironment : public Technique {
     /// Returns the radiance in the technique's map, each level half as large as the one before.
     TextureHandle addChain(TextureHandle environment, const glm::ivec2& source) const {
       const int levels = levelOf(size_, kCoarsestSize) + 1;
-      TextureHandle chain =
-          graph_.createTexture("radiance of the environment", desc(GL_RGBA32F, size_, levels));
+      const gpu::TextureDesc map = desc(GL_RGBA32F, size_, levels);
+      TextureHandle chain = graph_.createTexture("radiance of the environment", map);
       for (int level = 0; level < levels; ++level) {
         const bool base = level == 0;
         frame::PassBuilder pass = addPass("resample environment level " + std::to_string(level));
@@ -179,10 +179,9 @@ class PrefilteredEnvironment : public Technique {
         if (!base) pass.also(ShaderName("finer").level(level - 1));
         const auto program = pass.program(shader("resample", {{"BASE", base ? "1" : "0"}}));
         pass.execute(
-            [=, across = base ? samplesAcross(source) : kSamplesAcrossLevel,
-             extent = desc(GL_RGBA32F, std::max(size_ >> level, 1), 1)](frame::PassContext& context) {
+            [=, across = base ? samplesAcross(source) : kSamplesAcrossLevel](frame::PassContext& context) {
               context.use(program).set("samples_across", across);
-              dispatch(context, extent);
+              dispatch(context, map, level);
             });
       }
       return chain;
@@ -220,7 +219,8 @@ class PrefilteredEnvironment : public Technique {
     TextureHandle addLobes(TextureHandle chain, Lobes lobes, GLenum format) const {
       const bool power = lobes == Lobes::power;
       const std::string name = power ? "environment filtered with power lobes" : "filtered environment";
-      TextureHandle filtered = graph_.createTexture(name, desc(format, size_, kFilteredLevels));
+      const gpu::TextureDesc map = desc(format, size_, kFilteredLevels);
+      TextureHandle filtered = graph_.createTexture(name, map);
       for (int level = 0; level < kFilteredLevels; ++level) {
         frame::PassBuilder pass =
             addPass((power ? "filter environment with power lobes, level " : "filter environment level ") +
@@ -237,12 +237,11 @@ class PrefilteredEnvironment : public Technique {
         pass.execute([=,
                       alpha = power ? glsl::power_level_alpha(level)
                                     : glsl::environment_alpha(static_cast<float>(level + 1)),
-                      samples = samples_ << level,
-                      extent = desc(format, size_ >> level, 1)](frame::PassContext& context) {
+                      samples = samples_ << level](frame::PassContext& context) {
           gpu::Program& kernel = context.use(program);
           kernel.set("alpha", alpha);
           kernel.set("samples", samples);
-          dispatch(context, extent);
+          dispatch(context, map, level);
         });
       }
       return filtered;
@@ -303,8 +302,9 @@ class PrefilteredEnvironment : public Technique {
       return pass;
     }
 
-    static void dispatch(frame::PassContext& context, const gpu::TextureDesc& extent) {
-      context.dispatch(extent.width, extent.height, extent.layers, kGroupSize, kGroupSize);
+    /// Runs the program in use on all texels of a level.
+    static void dispatch(frame::PassContext& context, const gpu::TextureDesc& map, int level = 0) {
+      context.dispatch(map.width >> level, map.height >> level, map.layers, kGroupSize, kGroupSize);
     }
 
     frame::FrameGraph& graph_;

@@ -46,8 +46,8 @@ void main() {
   float weights = 0.0;
   for (int i = 0; i < samples_across * samples_across; ++i) {
     vec2 texel = vec2(at.xy) + grid_point(i, samples_across);
-    float weight = prefiltered_density(texel, extent.y);
-    sum += weight * radiance_towards(prefiltered_texel_direction(texel, at.z, extent.y));
+    float weight = prefiltered_density(texel, extent.xy);
+    sum += weight * radiance_towards(prefiltered_texel_direction(texel, at.z, extent.xy));
     weights += weight;
   }
   imageStore(coarser, at, vec4(sum / weights, 1.0));

@@ -3,11 +3,13 @@
 
 #include <gtest/gtest.h>
 
+#include <memory>
 #include <numbers>
 #include <vector>
 
 #include "core/base/error.h"
 #include "core/brdf/measured_model.h"
+#include "core/brdf/merl_file.h"
 #include "tests/unit/materials/models.h"
 
 namespace limn::brdf {
@@ -101,6 +103,45 @@ TEST(ModelFit, IsMadeOnceForEachModelAndSettings) {
   table.values.back().z += 1e-3f;
   EXPECT_NE(fitModel(appended(table, elsewhere), elsewhere, settings), ofTable);
   EXPECT_EQ(fitModel(phong, {}, settings), ofPhong) << "it is still there";
+}
+
+/// Tables are known by their hash and take nothing of the memory for fits, which five of MERL's would exceed.
+TEST(ModelFit, IsKeptHoweverLargeTheTableIs) {
+  const FitSettings settings{.factorisation = Factorisation::trilinear, .texels = 4, .samples = 200};
+  constexpr size_t nodes = size_t{kMerlSize.x} * size_t{kMerlSize.y} * size_t{kMerlSize.z};
+  std::vector<glm::vec3> measured;
+  measured.reserve(5 * nodes);
+  std::vector<glsl::MaterialModel> models;
+  std::vector<std::shared_ptr<const FactoredBrdf>> fits;
+  for (int i = 0; i < 5; ++i) {
+    const glm::vec3 f(0.1f + 0.02f * static_cast<float>(i));
+    models.push_back(
+        appended(TabulatedBrdf{.size = kMerlSize, .values = std::vector<glm::vec3>(nodes, f)}, measured));
+    fits.push_back(fitModel(models.back(), measured, settings));
+  }
+  for (size_t i = 0; i < models.size(); ++i) EXPECT_EQ(fitModel(models[i], measured, settings), fits[i]) << i;
+}
+
+/// Each has the fit that it has alone, and what cannot be fitted has none.
+TEST(ModelFit, OfSeveralModelsIsThatOfEach) {
+  for (const Factorisation factorisation : {Factorisation::dfg, Factorisation::svd}) {
+    const FitSettings settings{.factorisation = factorisation, .texels = 4, .samples = 200};
+    const std::vector<glsl::MaterialModel> models{
+        glsl::phongModel(0.3f, 0.25f, 10), glsl::phongModel(0, 0, 10), glsl::phongModel(0.3f, 0.25f, 20)};
+    const auto fits = fitModels(models, {}, settings);
+    ASSERT_EQ(fits.size(), 3u);
+    EXPECT_EQ(fits[0], fitModel(models[0], {}, settings));
+    EXPECT_EQ(fits[1], nullptr);
+    EXPECT_EQ(fits[2], fitModel(models[2], {}, settings));
+    EXPECT_NE(fits[0], fits[2]);
+    const std::vector<glm::vec3> none;
+    const FactoredBrdf alone = fitBrdf(modelBrdf(models[2], none), settings);
+    EXPECT_EQ(fits[2]->error, alone.error);
+    EXPECT_EQ(fits[2]->tables.front().texels, alone.tables.front().texels);
+  }
+  const std::vector<glsl::MaterialModel> one{glsl::phongModel(0.3f, 0.25f, 10)};
+  EXPECT_THROW(fitModels(one, {}, {.texels = 1}), UsageError);
+  EXPECT_TRUE(fitModels({}, {}, {}).empty());
 }
 
 /// What throws is asked again, and throws again.

@@ -3,9 +3,12 @@
 
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <cmath>
 #include <random>
 #include <vector>
+
+#include "glsl/materials/microfacet.glsl"
 
 namespace limn::glsl {
 namespace {
@@ -134,6 +137,12 @@ float stretch(const Map& map, vec2 u, float step) {
   return length(cross(du, dv)) / (4 * step * step);
 }
 
+/// Density of a visible normal (Heitz 2018, equation 3): of the direction that v is mirrored to by it, times
+/// the Jacobian of mirroring.
+float normalDensity(const vec3& v, const vec3& h, float alpha) {
+  return 4 * std::max(dot(v, h), 0.f) * visible_normal_pdf(v, h, vec2(alpha));
+}
+
 // A sampler's density is the inverse of how much it stretches area.
 TEST(Brdf, SamplersHaveTheDensitiesTheyState) {
   std::mt19937 random(3);
@@ -148,7 +157,7 @@ TEST(Brdf, SamplersHaveTheDensitiesTheyState) {
     const vec3 v = direction(unit(random), 6 * unit(random));
     const auto visible = [&](vec2 x) { return sample_visible_normal(v, vec2(alpha), x); };
     const vec3 h = visible(u);
-    const float pdf = ggx_visible_pdf(v.z, h.z, h.x * h.x + h.y * h.y, dot(v, h), alpha);
+    const float pdf = normalDensity(v, h, alpha);
     EXPECT_NEAR(stretch(visible, u, 1e-3f) * pdf, 1, 0.03) << alpha << ' ' << v.z << ' ' << u.x << ' ' << u.y;
   }
 }
@@ -167,8 +176,7 @@ TEST(Brdf, VisibleNormalDensityIsNormalised) {
         const float z = float(1 / std::sqrt(1 + t));
         for (int j = 0; j < sectors; ++j) {
           const vec3 h = direction(z, float(2 * M_PI * (j + 0.5) / sectors));
-          sum += ggx_visible_pdf(v.z, z, float(t / (1 + t)), dot(v, h), alpha) * (high - low) * 2 * M_PI /
-                 sectors;
+          sum += normalDensity(v, h, alpha) * (high - low) * 2 * M_PI / sectors;
         }
         low = high;
       }

@@ -23,8 +23,9 @@ struct Layout {
 
 const std::array kLayouts{
     Layout{2, 1, dual_paraboloid_place, dual_paraboloid_direction, dual_paraboloid_density},
-    Layout{1, 2, polar_map_place, [](vec2 texel, int, int size) { return polar_map_direction(texel, size); },
-           polar_map_density}};
+    Layout{1, 2, polar_map_place,
+           [](vec2 texel, int, int size) { return polar_map_direction(texel, ivec2(2 * size, size)); },
+           [](vec2 texel, int size) { return polar_map_density(texel, ivec2(2 * size, size)); }}};
 
 TEST(Prefiltered, PlacesAndDirectionsAreInverse) {
   Random random(5);
@@ -38,6 +39,18 @@ TEST(Prefiltered, PlacesAndDirectionsAreInverse) {
         EXPECT_LT(length(back - d), 2e-5f) << size;
         EXPECT_LT(place.z, static_cast<float>(layout.layers));
       }
+}
+
+/// Both sides of a map of 400 x 200 texels are halved and rounded down: its fifth level has 25 columns.
+TEST(Prefiltered, ALevelWithAnOddColumnGoesAllAround) {
+  constexpr ivec2 size(25, 12);
+  for (int y = 1; y + 1 < size.y; ++y)  // between the poles
+    for (int x = 0; x < size.x; ++x) {
+      const vec2 texel = vec2(x, y) + vec2(0.5f);
+      const vec3 place = polar_map_place(polar_map_direction(texel, size), size.y);
+      EXPECT_NEAR(place.x * static_cast<float>(size.x), texel.x, 1e-4f);
+      EXPECT_NEAR(place.y * static_cast<float>(size.y), texel.y, 1e-4f);
+    }
 }
 
 // Between the centres of the outermost texels, so that no lookup leaves the layer, poles and rims included.
