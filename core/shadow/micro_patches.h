@@ -10,8 +10,10 @@
 
 namespace limn::shadow {
 
+constexpr int kFewestPatches = 3;  ///< along a side
+
 constexpr Parameter patchesParameter() {
-  return integer("patches", 32, {3, 1024}, "micro-patches",
+  return integer("patches", 32, {kFewestPatches, 1024}, "micro-patches",
                  "Micro-patches along each side of a kernel, at most; wider kernels are walked in steps of "
                  "several texels")
       .quality()

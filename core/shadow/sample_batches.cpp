@@ -1,10 +1,14 @@
 #include "core/shadow/sample_batches.h"
 
+#include <fmt/format.h>
+
 #include <algorithm>
 #include <limits>
 
+#include "core/base/error.h"
 #include "core/gpu_scene/gpu_medium.h"
 #include "core/gpu_scene/gpu_scene.h"
+#include "core/shadow/shadow_map.h"
 #include "core/technique/technique.h"
 
 namespace limn::shadow {
@@ -30,12 +34,29 @@ std::vector<SampleBatch> sampleBatches(int total, const SampleLayers& layers, in
   return batches;
 }
 
+int mostStepsOfLoops(const TechniqueInputs& inputs) {
+  // Of the renderer itself: it leaves loops whichever paths its device takes. The rest is for loops around.
+  return inputs.gpuScene.device().context().info().software ? 60000 : std::numeric_limits<int>::max();
+}
+
 int mostSamplesOfLoop(const TechniqueInputs& inputs) {
-  // Of the renderer itself: it leaves loops whichever paths its device takes.
-  if (!inputs.gpuScene.device().context().info().software) return std::numeric_limits<int>::max();
-  constexpr int kSteps = 30000;  // of each of two loops; what is left is for those around them
   const int way = inputs.handles.density ? 2 * scene::kCoreMediumSteps + 1 : 0;
-  return kSteps / (1 + way);
+  const int reflects = inputs.handles.surface ? inputs.handles.surface->steps : 0;
+  return mostStepsOfLoops(inputs) / 2 / (1 + way + reflects);
+}
+
+void checkSamplesOfParts(const TechniqueInputs& inputs, std::string_view technique, const ShadowMaps& maps,
+                         int samples) {
+  for (const LightLayout& layout : inputs.service<ShadowMapService>().layouts(maps)) {
+    // Where there are several views, a sample takes up to two steps more to the one that sees it.
+    const int steps = layout.faces == glsl::shadow_faces_single ? 1 : 3;
+    const int parts = static_cast<int>(layout.parts()), most = mostStepsOfLoops(inputs) / (steps * parts);
+    if (samples <= most) continue;
+    throw UsageError(
+        fmt::format("{}: each of the {} parts of a light takes {} samples, more than the {} that software "
+                    "renderers get through; set fewer samples or a smaller views",
+                    technique, parts, samples, most));
+  }
 }
 
 void SampleBatch::defineOrder(std::map<std::string, std::string>& defines) const {

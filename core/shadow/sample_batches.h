@@ -6,6 +6,7 @@
 #include <glm/glm.hpp>
 #include <map>
 #include <string>
+#include <string_view>
 #include <vector>
 
 #include "core/base/export.h"
@@ -18,6 +19,8 @@ struct TechniqueInputs;
 }
 
 namespace limn::shadow {
+
+struct ShadowMaps;
 
 /// Holds the samples first .. first + count - 1 of `total`.
 struct SampleBatch {
@@ -48,10 +51,18 @@ struct SampleLayers {
 LIMN_API std::vector<SampleBatch> sampleBatches(int total, const SampleLayers& layers, int mebibytes,
                                                 int largest = 4096);
 
-/// Returns how many samples one loop of a program may reflect; a pixel has two such loops at most. llvmpipe
-/// leaves all loops of a thread after 65,535 steps in all, and light that crosses the grid of a medium takes
-/// many of them: on software renderers that bounds the samples.
+/// Returns how many steps all loops of a thread may take together: llvmpipe leaves them after 65,535. GPUs
+/// have no such bound.
+LIMN_API int mostStepsOfLoops(const TechniqueInputs& inputs);
+
+/// Returns how many samples one loop of a program may reflect; a pixel has two such loops at most. Light that
+/// crosses the grid of a medium takes many steps.
 LIMN_API int mostSamplesOfLoop(const TechniqueInputs& inputs);
+
+/// Throws UsageError where a pixel that takes `samples` in each part of a light would leave its loops before
+/// it comes to the last part, on software renderers.
+LIMN_API void checkSamplesOfParts(const TechniqueInputs& inputs, std::string_view technique,
+                                  const ShadowMaps& maps, int samples);
 
 /// Returns the place of sample i in the unit square: the R2 sequence, shifted so that the first is the
 /// centre.

@@ -1,4 +1,5 @@
 // Percentage-closer soft shadows (Fernando 2005): a blocker search, then a filter as wide as the penumbra.
+#include "core/shadow/sample_batches.h"
 #include "core/shadow/visibility_pass.h"
 #include "core/technique/technique.h"
 
@@ -46,6 +47,8 @@ class Pcss : public Technique {
     shadow::VisibilityPass pass = shadow::visibilityPass(
         inputs, request, info.name,
         {{"PATTERN", std::to_string(p.choice("pattern"))}, {"SEARCH", std::to_string(p.choice("search"))}});
+    shadow::checkSamplesOfParts(inputs, info.name, pass.maps,
+                                p.integer("blocker_samples") + p.integer("filter_samples"));
     const bool narrowed = p.choice("search") == 2;
     if (narrowed) {
       pass.sampled = {{"shadow_min_max", inputs.service<shadow::ShadowMapService>().minMaxWindows(pass.maps),

@@ -32,7 +32,7 @@ class SampledAreaLight : public Technique {
   frame::TextureHandle addPasses(frame::FrameGraph& graph, const TechniqueInputs& inputs,
                                  const TermRequest& request) override {
     frame::TextureHandle target = request.target;
-    for (const Batch& batch : batchesOf(inputs, request.lights))
+    for (const Batch& batch : batchesOf(inputs, request))
       target = request.term == Term::direct ? addDirect(graph, inputs, request, target, batch)
                                             : addVisibility(graph, inputs, target, request, batch);
     return target;
@@ -45,10 +45,11 @@ class SampledAreaLight : public Technique {
     return desc;
   }
 
-  static std::vector<Batch> batchesOf(const TechniqueInputs& inputs, std::span<const uint32_t> lights) {
+  static std::vector<Batch> batchesOf(const TechniqueInputs& inputs, const TermRequest& request) {
     const int samples = inputs.parameters.integer("samples");
     // Faces are chosen for all samples: those at a light's edge may need more than its centre does.
     const shadow::ShadowMapDesc all = mapsOf(inputs.parameters, 0, samples);
+    const std::span<const uint32_t> lights = request.lights;
     shadow::SampleLayers layers{.size = all.size};
     const auto dark = [&](uint32_t light) { return inputs.pose.lights[light].emission == glm::vec3(0); };
     const bool allDark = std::ranges::all_of(lights, dark);
@@ -62,9 +63,11 @@ class SampledAreaLight : public Technique {
       else
         layers.shared += taken;
     }
-    // A pixel goes through the samples of all lights.
+    const int memory = inputs.parameters.integer("memory");
+    if (request.term != Term::direct) return shadow::sampleBatches(samples, layers, memory);
+    // A pixel goes through the samples of all lights, and their light through the medium.
     const int lightCount = std::max(1, static_cast<int>(lights.size()));
-    return shadow::sampleBatches(samples, layers, inputs.parameters.integer("memory"),
+    return shadow::sampleBatches(samples, layers, memory,
                                  std::max(1, shadow::mostSamplesOfLoop(inputs) / lightCount));
   }
 

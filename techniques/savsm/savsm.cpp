@@ -1,6 +1,7 @@
 // Soft shadows from summed-area variance shadow maps: the baseline of vssm.
 #include <fmt/format.h>
 
+#include "core/shadow/sample_batches.h"
 #include "core/shadow/visibility_pass.h"
 #include "core/technique/technique.h"
 
@@ -40,6 +41,8 @@ class Savsm : public Technique {
     shadow::VisibilityPass pass = shadow::visibilityPass(
         inputs, request, info.name,
         {{"PATTERN", std::to_string(p.choice("pattern"))}, {"SEARCH", std::to_string(p.choice("search"))}});
+    // Where the light's centre lies beneath the tangent plane the penumbra kernel takes as many again.
+    shadow::checkSamplesOfParts(inputs, info.name, pass.maps, 2 * p.integer("blocker_samples"));
     // A kernel may be the whole map.
     const shadow::SummedAreaTable table = shadow::summedAreaTable(inputs, pass.maps, pass.maps.size);
     pass.program.defines["TABLE_FORMAT"] = fmt::format("{}u", table.format);

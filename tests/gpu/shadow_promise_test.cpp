@@ -3,6 +3,7 @@
 
 #include "core/image/image.h"
 #include "tests/gpu/ball_scene.h"
+#include "tests/support/density_grids.h"
 
 namespace limn {
 namespace {
@@ -203,6 +204,18 @@ TEST_F(ShadowPromiseTest, BatchesOfSamplesCountExactly) {
     EXPECT_EQ(std::ranges::max(batches.lights[0]), 1);
     EXPECT_EQ(batches.lights[0], whole.lights[0]);
   }
+}
+
+/// Through the grid of a medium light takes so many steps of a software renderer's loops that samples of six
+/// lights would not fit one batch, whose maps are kept. V needs no medium.
+TEST_F(ShadowPromiseTest, MediaDoNotPartTheSamplesOfVisibility) {
+  drawn = 16;
+  BallScene s;
+  s.scene.medium.sigmaA = vec3(0.01f);
+  scene::setGrid(s.scene.medium, constantGrid(s.pose.bounds, 1));
+  const Answer v = visibility("sampled_area_light", {{"samples", "64"}, {"shadow_map_size", "16"}}, s.scene,
+                              s.pose, s.camera);
+  EXPECT_EQ(v.passes, std::vector<std::string>{"visibility"});
 }
 
 /// A light that emits nothing has its maps in batches where no other shines.
