@@ -41,6 +41,17 @@ bool litAreLambertian(const TechniqueInputs& inputs) {
   return inputs.handles.modelKinds == 0 && std::ranges::all_of(inputs.pose.instances, isLambertian);
 }
 
+/// Of the renderer itself: it leaves loops whichever paths its device takes.
+bool leavesLoops(const TechniqueInputs& inputs) {
+  return inputs.gpuScene.device().context().info().software;
+}
+
+/// Returns the steps that the loops of a thread take for a light: one, and those in which each of its pixels
+/// reflects it.
+int stepsOfLight(const TechniqueInputs& inputs, int pixels) {
+  return 1 + (inputs.handles.surface ? pixels * inputs.handles.surface->steps : 0);
+}
+
 }  // namespace
 
 int usableBlock(int block, int lights) {
@@ -152,14 +163,16 @@ void Gather::declareShading(frame::PassBuilder& pass, ShadePass& shade, const GB
 }
 
 /// Returns the passes that shade, whose threads take the lights of a number of sub-buffers: one pass, but for
-/// software renderers. A pass ends where a sub-buffer does, where it can, since areas begin again there. With
-/// a map for each light there is one pass, as an array has fewer layers than a loop has steps.
+/// software renderers. A pass ends where a sub-buffer does, where it can, since areas begin again there.
 std::vector<ShadePass> Gather::passesOf(const ShadePass& shade, int subBuffers) const {
   const int block = settings_.block, most = (lights_.count + block * block - 1) / (block * block);
   const int lights = std::min(shade.count, most);  // of a sub-buffer
+  // Threads of areas and of edges shade one pixel, others four.
+  const int ofLight = stepsOfLight(inputs_, shade.areas > 0 || subBuffers > 1 ? 1 : 4);
   const int ofAreas = std::min(lights, shade.areas) * shade.areaSteps;
-  if (!inputs_.gpuScene.device().software() || (lights + ofAreas) * subBuffers <= kMostSteps) return {shade};
-  const int together = std::max(kMostSteps / (lights + ofAreas), 1);  // sub-buffers
+  const int ofSubBuffer = lights * ofLight + ofAreas;
+  if (!leavesLoops(inputs_) || ofSubBuffer * subBuffers <= kMostSteps) return {shade};
+  const int together = std::max(kMostSteps / ofSubBuffer, 1);  // sub-buffers
   std::vector<ShadePass> passes;
   for (int first = shade.first; first < shade.first + shade.count;) {
     const auto count = static_cast<uint32_t>(lights_.count), side = static_cast<uint32_t>(block);
@@ -167,8 +180,8 @@ std::vector<ShadePass> Gather::passesOf(const ShadePass& shade, int subBuffers) 
     const uint32_t next = glsl::gather_begin(subBuffer + static_cast<uint32_t>(together), count, side);
     ShadePass& pass = passes.emplace_back(shade);
     pass.first = first;
-    pass.count =
-        std::min({kMostSteps - ofAreas, static_cast<int>(next) - first, shade.first + shade.count - first});
+    pass.count = std::min({(kMostSteps - ofAreas) / ofLight, static_cast<int>(next) - first,
+                           shade.first + shade.count - first});
     first += pass.count;
   }
   return passes;

@@ -40,7 +40,8 @@ ShadePass lightMapShadePass(const TechniqueInputs& inputs, const ParaboloidMaps&
           .first = maps.first,
           .count = maps.count,
           .sampled = {{"maps", maps.depth, "what virtual lights see"}},
-          .bind = [bias, &scene = inputs.gpuScene](gpu::Program& kernel) {
+          .bind = [bias, first = maps.first, &scene = inputs.gpuScene](gpu::Program& kernel) {
+            kernel.set("first_map", static_cast<unsigned>(first));
             kernel.set("bias", bias);
             kernel.set("extent", extentOf(scene));
           }};

@@ -5,10 +5,12 @@
 #include <tbb/parallel_for.h>
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 
 #include "core/base/error.h"
 #include "core/radiosity/illumination.h"
+#include "core/radiosity/private/tree_memory.h"
 #include "glsl/indirect/illumination_sample.glsl"
 #include "glsl/materials/material_model.glsl"
 #include "glsl/numeric/srgb.glsl"
@@ -252,12 +254,7 @@ void SampleSolver::reflect(Worker& worker, uint32_t leaf, const glm::vec3& diffu
 }
 
 void SampleSolver::count(const DirectionalTree& tree) {
-  if ((treeBytes_ += tree.memory()) > settings_.memory)
-    throw UsageError(
-        fmt::format("light over directions takes more than the {} MiB allowed: a larger direction_error or "
-                    "longest_edge, or "
-                    "a smaller max_level makes it less",
-                    settings_.memory >> 20));
+  if ((treeBytes_ += tree.memory()) > settings_.memory) refuseTrees(settings_.memory);
 }
 
 void SampleSolver::reflect() {
@@ -315,6 +312,26 @@ void SampleSolver::pullTree(Worker& worker, uint32_t slot) {
         {.tree = &trees_[c], .frame = frames_[c], .area = elements_[c].area, .diffuse = unshot_[c]});
   worker.builder.pull(worker.parts, frames_[slot], settings_.tree, trees_[slot]);
   count(trees_[slot]);
+}
+
+uint64_t SampleSolver::mostSamplesAround() const {
+  const std::span<const uint32_t> corners = forest_.triangles(), parents = forest_.parents();
+  uint64_t most = 0;
+  for (size_t t = 0; t + 2 < corners.size(); t += 3) {
+    std::array<uint32_t, 3> at{corners[t], corners[t + 1], corners[t + 2]};
+    if (std::ranges::none_of(at, [&](uint32_t leaf) { return glossy(leaf); })) continue;
+    uint64_t samples = 0;
+    while (std::ranges::any_of(at, [](uint32_t slot) { return slot != glsl::no_link; })) {
+      for (size_t k = 0; k < at.size(); ++k) {
+        const bool counted = (k > 0 && at[k] == at[0]) || (k > 1 && at[k] == at[1]);
+        if (at[k] != glsl::no_link && !counted) samples += samples_[at[k]].size();
+      }
+      for (uint32_t& slot : at)
+        if (slot != glsl::no_link) slot = parents[slot / 4];
+    }
+    most = std::max(most, samples);
+  }
+  return most;
 }
 
 glm::vec3 SampleSolver::treeValue(uint32_t slot, uint32_t leaf, const glm::vec3& direction) const {

@@ -103,6 +103,9 @@ class LIMN_API SampleSolver {
   /// Returns what stands for an element as the sender of a sample.
   Sender sender(uint32_t slot) const;
   uint64_t sampleCount() const { return sampleCount_; }
+  /// Returns the most samples that the elements around a point of a glossy surface have: its triangle's
+  /// leaves and all elements above them, each once.
+  uint64_t mostSamplesAround() const;
   /// Returns the radiance that a leaf has yet to send towards a direction (unit, in the space of the
   /// elements), W/(sr m^2).
   glm::vec3 unshot(uint32_t leaf, const glm::vec3& direction) const;

@@ -1,9 +1,13 @@
 #include "core/radiosity/tree_builder.h"
 
+#include <fmt/format.h>
+
 #include <algorithm>
 #include <cmath>
 
+#include "core/base/error.h"
 #include "core/radiosity/private/cell_refiner.h"
+#include "core/radiosity/private/tree_memory.h"
 #include "core/radiosity/private/tree_sources.h"
 #include "glsl/numeric/srgb.glsl"
 
@@ -20,6 +24,13 @@ void scaleToFlux(DirectionalTree& tree, const glm::vec3& wanted) {
 }
 
 }  // namespace
+
+void refuseTrees(uint64_t bytes) {
+  throw UsageError(
+      fmt::format("light over directions takes more than the {} MiB allowed: a larger direction_error or "
+                  "longest_edge, or a smaller max_level makes it less",
+                  bytes >> 20));
+}
 
 struct TreeBuilder::Scratch : CellRefiner {};
 

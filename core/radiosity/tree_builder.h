@@ -32,6 +32,8 @@ struct TreeSettings {
   int minLevel = 2;    ///< every cell has this level at least; 0 to maxLevel
   int maxLevel = 8;    ///< no cell has more; 0 to 10. The same as minLevel: one level
   bool frozen = true;  ///< lobes that are linear over a cell are no longer evaluated in it
+  /// Bytes that a tree may take while it is built, with all that is kept for it; more throw UsageError.
+  uint64_t memory = uint64_t{1} << 30;
   bool operator==(const TreeSettings&) const = default;
 };
 

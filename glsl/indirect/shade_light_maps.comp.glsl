@@ -3,7 +3,8 @@
 #include "glsl/indirect/gather_main.glsl"
 #include "glsl/indirect/light_map.glsl"
 
-uniform sampler2DArray maps;  // of the batch's lights
+uniform sampler2DArray maps;  // of consecutive lights
+uniform uint first_map;       // the light of their first layer
 uniform float extent;         // diagonal of the scene's bounds, m
 uniform float bias;           // texel footprints
 
@@ -14,7 +15,7 @@ int layer;
 void vpl_begin(uint vpl, VirtualPointLight light) {
   all_maps = light_maps(extent, uint(textureSize(maps, 0).x));
   axes = light_map_axes(light.normal);
-  layer = int(vpl - batch_first);
+  layer = int(vpl - first_map);
 }
 
 float vpl_visibility(VirtualPointLight light, uint pixel, Receiver r, VplSight sight) {

@@ -119,7 +119,8 @@ class IlluminationSamples : public Technique {
                                  .error = p.real("direction_error"),
                                  .minLevel = std::min(p.integer("min_level"), p.integer("max_level")),
                                  .maxLevel = p.integer("max_level"),
-                                 .frozen = !immediate};
+                                 .frozen = !immediate,
+                                 .memory = uint64_t(p.integer("memory")) << 20};
     if (p.choice("basis") == 1) {
       tree.basis = radiosity::TreeSettings::Basis::uniform;
       tree.maxLevel = std::min(tree.maxLevel, radiosity::DirectionalTree::kMaxUniformLevel);
@@ -135,7 +136,7 @@ class IlluminationSamples : public Technique {
                                                 .receiver = p.choice("receiver") == 1,
                                                 .tree = tree,
                                                 .immediate = immediate,
-                                                .memory = uint64_t(p.integer("memory")) << 20,
+                                                .memory = tree.memory,
                                                 .pairs = uint64_t(p.integer("pairs")) * 1'000'000},
                                     .shownTree = shownTree,
                                     .shown = shown,

@@ -163,17 +163,9 @@ void reserve(gpu::Device& device, gpu::Buffer& buffer, const char* what, size_t 
 /// llvmpipe leaves all loops of a thread after 65,535 steps in all; the rest is for those around samples.
 constexpr uint64_t kMostSteps = 65000;
 
-/// Throws UsageError where a pixel of a glossy surface has more samples than software renderers take: those
-/// of three leaves that are alike, and of the elements above them.
-void checkSteps(const radiosity::SampleSolver& solver, const radiosity::Forest& forest) {
-  uint64_t most = 0;
-  for (const uint32_t leaf : forest.leafOf()) {
-    if (!solver.glossy(leaf)) continue;
-    uint64_t steps = 3 * solver.samples(leaf).size();
-    for (uint32_t slot = forest.parents()[leaf / 4]; slot != glsl::no_link; slot = forest.parents()[slot / 4])
-      steps += solver.samples(slot).size();
-    most = std::max(most, steps);
-  }
+/// Throws UsageError where a pixel of a glossy surface has more samples than software renderers take.
+void checkSteps(const radiosity::SampleSolver& solver) {
+  const uint64_t most = solver.mostSamplesAround();
   if (most > kMostSteps)
     throw UsageError(
         fmt::format("illumination_samples: display=gather reflects up to {} samples at a pixel; software "
@@ -200,7 +192,7 @@ void Solution::uploadTrees(gpu::Device& device) {
 }
 
 void Solution::uploadSamples(gpu::Device& device) {
-  if (device.software()) checkSteps(solver_, elements_.elements().forest());
+  if (device.software()) checkSteps(solver_);
   const size_t bytes = solver_.sampleCount() * sizeof(glsl::IlluminationSample);
   reserve(device, sampleBuffer_, "illumination samples", bytes);
   const radiosity::ElementSpace& space = elements_.elements().space();

@@ -30,8 +30,12 @@ frame::BufferHandle ElementColours::colours(const PassRequest& r, Shown shown, i
   own.buffer = gpu::Buffer(r.inputs.gpuScene.device(), "colours of leaves",
                            own.values.size() * sizeof(glm::vec4), gpu::BufferUse::updated);
   frame::PassBuilder pass = r.graph.addPass("colours of elements", technique_);
-  elements_.readInMemory(pass);
-  pass.read(r.inputs.handles.frame, Access::uniformBuffer, "the camera, in the CPU's memory as well");
+  if (shown == Shown::level) {
+    pass.cacheable();  // the hierarchy stays as it was made
+  } else {
+    elements_.readInMemory(pass);
+    pass.read(r.inputs.handles.frame, Access::uniformBuffer, "the camera, in the CPU's memory as well");
+  }
   const frame::BufferHandle colours = pass.write(r.graph.importBuffer("colours of leaves", own.buffer),
                                                  Access::copyTarget, "a colour for each leaf");
   pass.execute([this, &own, shown, level, &scene = r.inputs.gpuScene,

@@ -178,6 +178,11 @@ TEST_F(ImplicitVisibilityTest, HierarchyAndLinksAreShownInColours) {
   const size_t leaves = hues(shown("level", "0")), third = hues(shown("level", "3")),
                roots = hues(shown("level", "32"));
   std::printf("hues: %zu of leaves, %zu three levels above, %zu of roots\n", leaves, third, roots);
+  for (const frame::PassReport& pass : renderer.explain()) {
+    if (pass.name.starts_with("links")) {
+      EXPECT_EQ(pass.state, frame::PassState::leftOut) << "levels have nothing to do with links";
+    }
+  }
   EXPECT_GT(leaves, 4 * third);
   EXPECT_GT(third, roots);
   EXPECT_GT(roots, 1u);

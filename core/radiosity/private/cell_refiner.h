@@ -12,6 +12,7 @@
 #include "core/radiosity/private/corner_level.h"
 #include "core/radiosity/private/float4.h"
 #include "core/radiosity/private/tree_cell.h"
+#include "core/radiosity/private/tree_memory.h"
 #include "core/radiosity/tree_builder.h"
 #include "glsl/numeric/srgb.glsl"
 
@@ -216,8 +217,12 @@ struct CellRefiner {
     cell.lobes = takeSet(source, keptList, keptCount);
   }
 
+  /// Returns what the cells take, with all that is kept of them, bytes.
+  uint64_t memory() const { return cells.size() * sizeof(TreeCell) + lists.memory() + values.memory(); }
+
   template <class Source>
   void split(const Source& source, uint32_t index) {
+    if (memory() > settings.memory) refuseTrees(settings.memory);
     count(cells[index], -1);
     if (keeps) freeze(source, cells[index]);
     const auto firstChild = static_cast<uint32_t>(cells.size());

@@ -69,6 +69,8 @@ class Arena {
     if (used_ > values_.size()) values_.resize(2 * used_);
     return first;
   }
+  /// Returns what was taken, bytes.
+  size_t memory() const { return used_ * sizeof(T); }
   T* at(size_t first) { return values_.data() + first; }
 
  private:

@@ -4,7 +4,10 @@
 #include <gtest/gtest.h>
 
 #include <algorithm>
+#include <cstdint>
 #include <cstdio>
+#include <set>
+#include <span>
 #include <vector>
 
 #include "core/base/error.h"
@@ -301,6 +304,35 @@ TEST(SampleSolverTest, DarknessAndSingleTrianglesAreHarmless) {
     EXPECT_EQ(one.solver->shoot(FreeSight()).links, 0u);
     EXPECT_EQ(one.mean(0), 0);
   }
+}
+
+/// Corners of a triangle may lie in clusters of their own, whose elements have samples of their own: those of
+/// a sphere, by the axes of its normals.
+TEST(SampleSolverTest, SamplesAroundATriangleAreThoseOfAllElementsAboveIt) {
+  SampleWorld world({rectangleMesh({-1, 0, -1}, {0, 0, 2}, {2, 0, 0}, 8), sphereMesh({0, 1, 0}, 0.3f, 8)},
+                    {diffuseLeaf(0.8f), metalLeaf(0.3f)});
+  world.light({1, 0});
+  world.solver->reflect();
+  world.solver->shoot(FreeSight());
+  const std::span<const uint32_t> corners = world.forest.triangles();
+  size_t most = 0, oneChain = 0;
+  for (size_t t = 0; t < corners.size(); t += 3) {
+    if (!world.solver->glossy(corners[t])) continue;
+    std::set<uint32_t> around;
+    for (const uint32_t leaf : corners.subspan(t, 3)) {
+      size_t chain = 0;
+      for (uint32_t slot = leaf; slot != glsl::no_link; slot = world.forest.parents()[slot / 4]) {
+        around.insert(slot);
+        chain += world.solver->samples(slot).size();
+      }
+      oneChain = std::max(oneChain, chain);
+    }
+    size_t samples = 0;
+    for (const uint32_t slot : around) samples += world.solver->samples(slot).size();
+    most = std::max(most, samples);
+  }
+  EXPECT_GT(oneChain, 0u);
+  EXPECT_EQ(world.solver->mostSamplesAround(), most);
 }
 
 TEST(SampleSolverTest, ScenesThatTakeTooMuchMemoryAreRefused) {

@@ -2,9 +2,11 @@
 #include <gtest/gtest.h>
 
 #include <cmath>
+#include <cstdint>
 #include <cstdio>
 #include <vector>
 
+#include "core/base/error.h"
 #include "tests/unit/glsl/random.h"
 #include "tests/unit/radiosity/lobes.h"
 
@@ -212,6 +214,20 @@ TEST(TreeBuilder, StandsExtremes) {
           ASSERT_NEAR(tree.flux()[c], lobes.flux()[c], 2e-5f * lobes.flux()[c]) << roughness;
         for (const auto& node : tree.nodes()) ASSERT_TRUE(std::isfinite(node.value.x) && node.value.x >= 0);
       }
+}
+
+/// Cells are counted while they are made: an error may ask for more of them than memory holds.
+TEST(TreeBuilder, TreesThatTakeTooMuchMemoryAreRefused) {
+  TreeBuilder builder;
+  DirectionalTree tree;
+  const GlossyLobes lobes = lobesOf(0.3f, {lightFrom(45)});
+  for (const Criterion criterion : {Criterion::transport, Criterion::relative}) {
+    const TreeSettings asked{
+        .criterion = criterion, .error = 1e-3f, .maxLevel = 10, .memory = uint64_t{1} << 20};
+    EXPECT_THROW(builder.build(lobes, asked, tree), UsageError);
+    builder.build(lobes, {.error = 0.2f}, tree);
+    EXPECT_NEAR(errorOf(tree, lobes), 0.2, 0.04);
+  }
 }
 
 TEST(TreeBuilder, OneLevelLosesNarrowLobes) {
