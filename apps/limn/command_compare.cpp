@@ -46,13 +46,14 @@ int runCompare(const CompareArguments& options) {
   const Image image = readImage(options.image), reference = readImage(options.reference);
   const auto term = reference.metadata().find("term");
   compare.background = term != reference.metadata().end() && hasBackground(term->second);
-  const Metrics metrics = compareImages(image, reference, compare);
+  const Comparison comparison = compareImagesDetailed(image, reference, compare);
   if (!options.diff.empty()) {
-    Image difference = differenceImage(image, reference, compare);
+    Image difference = differenceImage(comparison);
     sign(difference);
     writePng(options.diff, difference);
     sayWritten(options.diff);
   }
+  const Metrics& metrics = comparison.metrics;
   fmt::print("{}\n", options.json ? metricsJson(metrics) : metricsTable(metrics));
   return 0;
 }

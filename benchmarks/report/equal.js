@@ -10,14 +10,18 @@ const NEAR = 1.5;  // times or errors within this factor of the target count as 
 
 const distance = (value, target) => Math.abs(Math.log(value / target));
 
-/** Of every curve the point nearest to the target, if it is near, outdated ones after all others: [{curve, row, ms, error}]. */
+/**
+ * Of every curve the point nearest to the target, if it is near, of equally near ones the quickest, outdated ones after all
+ * others: [{curve, row, ms, error}].
+ */
 export function nearest(curves, metric, time, key, target) {
   const found = [], missing = [];
   for (const curve of curves) {
     const points = measured(curve.rows, metric, time).filter((point) => point[key] > 0);
     if (points.length === 0) continue;
     const age = ({row}) => (row.outdated ? 1 : 0), away = (point) => distance(point[key], target);
-    const [best] = points.filter((point) => away(point) <= Math.log(NEAR)).sort((a, b) => age(a) - age(b) || away(a) - away(b));
+    const [best] = points.filter((point) => away(point) <= Math.log(NEAR))
+      .sort((a, b) => age(a) - age(b) || away(a) - away(b) || a.ms - b.ms);
     if (best) found.push({...best, curve});
     else missing.push(curve.name);
   }
@@ -57,7 +61,7 @@ function strip(table, points, metric) {
 
 /** One row of pictures with the slider that chooses its target. */
 function equalRow(table, curves, metric, time, kind) {
-  const key = kind.key;
+  const key = kind.of;
   const values = curves.flatMap((curve) => measured(curve.rows, metric, time).map((point) => point[key]))
     .filter((value) => value > 0);
   if (values.length === 0) return null;
@@ -71,12 +75,16 @@ function equalRow(table, curves, metric, time, kind) {
       (missing.length ? ` Not near it: ${missing.join(", ")}.` : "")), ...strip(table, found, metric));
   };
   const target = commonTarget(curves, metric, time, key);
-  return el("div", {class: `equal equal-${key}`}, el("h3", {}, kind.title), slider(kind.label, values, target, kind.text, show), body);
+  return el("div", {class: `equal equal-${kind.key}`}, el("h3", {}, kind.title),
+    slider(kind.label, values, target, kind.text, show), body);
 }
 
+/** `of` is the figure of a point that is to be equal: errors below the noise are. */
 const KINDS = [
-  {key: "ms", title: "Equal time", label: "Target time", name: (metric, time) => `Time, ${time.label}:`, text: milliseconds},
-  {key: "error", title: "Equal error", label: "Target error", name: (metric) => `${metric.label}:`, text: number},
+  {key: "ms", of: "ms", title: "Equal time", label: "Target time", text: milliseconds,
+   name: (metric, time) => `Time, ${time.label}:`},
+  {key: "error", of: "bound", title: "Equal error", label: "Target error", text: number,
+   name: (metric) => `${metric.label}:`},
 ];
 
 /** Every setting, for tables that time nothing. */

@@ -9,11 +9,14 @@ namespace limn::bench {
 namespace fs = std::filesystem;
 namespace {
 
-/// Copies a file that a row names, whole or not at all.
-void bring(const fs::path& from, const fs::path& into, const std::string& name) {
+/// Copies a file with that extension which a row names, whole or not at all. Any other file might take the
+/// place of one of the folder's own, such as its rows.
+void bring(const fs::path& from, const fs::path& into, const std::string& name, const char* extension) {
   const fs::path source = fileInFolder(from, name);
   const fs::path relative = fs::path(name).lexically_normal();
-  if (source.empty() || relative.is_absolute() || *relative.begin() == "..") return;
+  if (source.empty() || relative.is_absolute() || *relative.begin() == ".." ||
+      relative.extension() != extension)
+    return;
   createFolder((into / relative).parent_path());
   writeFile(into / relative, readFile(source));
 }
@@ -43,9 +46,10 @@ int mergeFolder(const fs::path& from, const fs::path& into, ResultsFile& results
     if (known != nullptr && !replaces(row, *known, provenance)) continue;
     std::error_code error;
     // References have names by what is in them, pictures by the row's key.
-    for (const std::string& file : {row.referenceFile, referencePicture(row)})
-      if (!fs::exists(into / file, error)) bring(from, into, file);
-    for (const std::string& file : {row.picture, row.difference}) bring(from, into, file);
+    for (const auto& [file, extension] :
+         {std::pair(row.referenceFile, ".exr"), {referencePicture(row), ".png"}})
+      if (!fs::exists(into / file, error)) bring(from, into, file, extension);
+    for (const std::string& file : {row.picture, row.difference}) bring(from, into, file, ".png");
     results.append(row);
     ++appended;
   }

@@ -19,6 +19,13 @@ std::size_t below(std::size_t limit, std::mt19937& random) {
   return random() % limit;
 }
 
+/// The sample within what clocks tell, from a nanosecond to some years: rows of unknown origin may hold any
+/// number, and two times of 0 would have a ratio that compares with none.
+double plausible(double ms) {
+  constexpr double kLeast = 1e-6, kMost = 1e12;
+  return ms > kLeast ? std::min(ms, kMost) : kLeast;
+}
+
 /// No turn is without a sample.
 std::size_t turnsOf(const Samples& samples) {
   return std::clamp<std::size_t>(static_cast<std::size_t>(std::max(samples.turns, 1)), 1,
@@ -31,13 +38,16 @@ double resampledMedian(const Samples& samples, std::mt19937& random, std::vector
   for (std::size_t i = 0; i < turns; ++i) {
     const std::size_t turn = turns > 1 ? below(turns, random) : 0;
     const std::size_t first = turn * count / turns, size = (turn + 1) * count / turns - first;
-    for (std::size_t k = 0; k < size; ++k) scratch.push_back(samples.values[first + below(size, random)]);
+    for (std::size_t k = 0; k < size; ++k)
+      scratch.push_back(plausible(samples.values[first + below(size, random)]));
   }
   return render::quartiles(scratch).median;
 }
 
 double median(const Samples& samples) {
-  return render::quartiles({samples.values.begin(), samples.values.end()}).median;
+  std::vector<double> values(samples.values.begin(), samples.values.end());
+  std::ranges::transform(values, values.begin(), plausible);
+  return render::quartiles(std::move(values)).median;
 }
 
 /// The share of Student's distribution that lies within t, which is sqrt(degrees) s / sqrt(1 - s^2)

@@ -16,7 +16,7 @@ struct Ratio {
 
 /// Holds samples in the order measured, taken in turns of equal length with other work in between.
 struct Samples {
-  std::span<const double> values;  ///< not empty, above 0
+  std::span<const double> values;  ///< milliseconds, not empty; less than a nanosecond counts as one
   int turns = 1;
 };
 

@@ -180,8 +180,10 @@ int EmbeddedPictures::whole(const std::string& file) {
   if (compressed_) {
     const Image& image = decoded(file);
     if (image.empty()) return known_[file] = -1;
-    return add(file, Kind::whole, "webp",
-               encodeWebp(reduction_ > 1 ? reduced(image, reduction_) : image, file));
+    constexpr int kMostSide = 16383;  // of a WebP
+    const int longest = std::max(image.width(), image.height());
+    const int factor = std::max(reduction_, (longest + kMostSide - 1) / kMostSide);
+    return add(file, Kind::whole, "webp", encodeWebp(factor > 1 ? reduced(image, factor) : image, file));
   }
   const std::string png = readTextFile(path);
   if (!png.starts_with("\x89PNG")) return known_[file] = -1;

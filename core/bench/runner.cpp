@@ -20,24 +20,6 @@
 namespace limn::bench {
 namespace {
 
-/// Over penumbra pixels alone, since lit pixels hide the error of a visibility technique; nullopt where the
-/// reference has none that is compared.
-std::optional<Metrics> penumbraMetrics(const Image& image, const Reference& reference, CompareOptions options,
-                                       const std::vector<unsigned char>& mask) {
-  constexpr float kLow = Misjudged::kUmbra, kHigh = Misjudged::kLit;
-  const int red = reference.image.rgbChannels()[0];
-  bool any = false;
-  for (std::size_t i = 0; i < mask.size() && !any; ++i) {
-    if (mask[i] == 0) continue;
-    const float value = reference.image.data()[i * static_cast<std::size_t>(reference.image.channelCount()) +
-                                               static_cast<std::size_t>(red)];
-    any = value > kLow && value < kHigh;
-  }
-  if (!any) return std::nullopt;
-  options.maskTermRange = {kLow, kHigh};
-  return compareImages(image, reference.image, options);
-}
-
 Misjudged misjudged(const Image& image, const Reference& reference, const std::vector<unsigned char>& mask) {
   Misjudged count;
   const int v = image.rgbChannels()[0], r = reference.image.rgbChannels()[0];
@@ -87,7 +69,9 @@ Row measureRow(const Case& c, const std::string& key, const Reference& reference
   row.error = comparison.metrics;
   row.spectrum = errorSpectrum(measurement.image, reference.image, comparison.mask);
   if (c.term == name(Term::visibility)) {
-    row.penumbra = penumbraMetrics(measurement.image, reference, options, comparison.mask);
+    // Lit pixels hide the error of a visibility technique.
+    row.penumbra =
+        metricsWithin(measurement.image, reference.image, comparison, {Misjudged::kUmbra, Misjudged::kLit});
     row.misjudged = misjudged(measurement.image, reference, comparison.mask);
   }
   requireFinite(row.error);
@@ -97,8 +81,7 @@ Row measureRow(const Case& c, const std::string& key, const Reference& reference
     if (c.technique != kSeparationFloor)  // which no command renders
       sign(measurement.image, renderCommand(c, c.technique, c.parameters) + " --out " + key + ".png");
     row.picture = callbacks.keepPicture(key, measurement.image);
-    row.difference = callbacks.keepPicture(key + ".difference",
-                                           differenceImage(measurement.image, reference.image, options));
+    row.difference = callbacks.keepPicture(key + ".difference", differenceImage(comparison));
   }
   row.cost = std::move(measurement.cost);
   row.cost.bound = boundTurn(c, callbacks);

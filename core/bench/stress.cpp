@@ -14,6 +14,7 @@
 #include "core/question/term.h"
 #include "core/reference/reference.h"
 #include "core/render/renderer.h"
+#include "core/render/supersample.h"
 
 namespace limn::bench {
 namespace {
@@ -234,9 +235,7 @@ double StressRun::error(const TechniquePlugin& technique, const StressCase& c, c
   const int interfaces = render::interfacesOf(term, settings.techniques);
   const int bounces = render::bouncesOf(term, settings.techniques);
   q.renderer.configure(std::move(settings));
-  q.renderer.setCamera(q.camera);
-  q.renderer.render();
-  const Image image = q.renderer.read();
+  const Image image = render::supersample(q.renderer, q.camera, q.size, 1);  // all frames of its history
   checkValues(image, term);
 
   const auto [known, isNew] =

@@ -21,9 +21,12 @@ std::size_t afterString(std::string_view text, std::size_t at) {
     else if (text[at] == '\n' && !lines)
       return at;  // the parser will refuse it
     else if (text.substr(at, marks) == std::string(marks, quote))
-      return at + marks;
+      break;
   }
-  return text.size();
+  at = std::min(at + marks, text.size());
+  // A text of several lines may end in two quotes of its own, before its mark.
+  for (int own = 0; lines && own < 2 && at < text.size() && text[at] == quote; ++own) ++at;
+  return at;
 }
 
 /// The first line that is too deep, counted from 1; 0 if there is none.

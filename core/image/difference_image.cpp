@@ -21,9 +21,8 @@ glm::vec3 falseColour(float value) {
 
 }  // namespace
 
-Image differenceImage(const Image& image, const Image& reference, const CompareOptions& options) {
-  const Comparison comparison = compareImagesDetailed(image, reference, options);
-  Image picture = Image::rgb(image.width(), image.height());
+Image differenceImage(const Comparison& comparison) {
+  Image picture = Image::rgb(comparison.width, comparison.height);
   constexpr glm::vec3 kMasked(0.5f);
   for (std::size_t i = 0; i < comparison.mask.size(); ++i) {
     const glm::vec3 linear =

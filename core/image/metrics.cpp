@@ -268,15 +268,14 @@ std::vector<float> displayed(std::vector<float> radiance, float exposureEv) {
   return radiance;
 }
 
-void evaluateFlip(const std::vector<float>& image, const std::vector<float>& reference, int width, int height,
-                  float exposureEv, Comparison& result) {
-  result.flipMap = flipMap(displayed(image, exposureEv), displayed(reference, exposureEv), width, height);
+/// The mean of the FLIP map, which becomes 0 where nothing is compared.
+double meanFlip(Comparison& result) {
   double total = 0;
   for (std::size_t i = 0; i < result.flipMap.size(); ++i) {
     if (!result.mask[i]) result.flipMap[i] = 0.0f;
     total += result.flipMap[i];
   }
-  result.metrics.flip = total / static_cast<double>(result.metrics.pixels);
+  return total / static_cast<double>(result.metrics.pixels);
 }
 
 /// The mean of the channel over the compared pixels.
@@ -314,35 +313,74 @@ std::optional<double> noiseFloor(const Image& reference, std::span<const float> 
   return 3.0 * *relative * std::abs(mean) / static_cast<double>(rgb.size());
 }
 
-}  // namespace
-
-Comparison compareImagesDetailed(const Image& image, const Image& reference, const CompareOptions& options) {
+void checkComparable(const Image& image, const Image& reference) {
   if (image.empty() || reference.empty()) throw Error("compare: an empty picture");
   if (image.width() != reference.width() || image.height() != reference.height()) {
     throw Error(fmt::format("compare: the image has {}x{} pixels, the reference {}x{}; they must be equal",
                             image.width(), image.height(), reference.width(), reference.height()));
   }
+}
+
+/// Keeps the pixels whose reference, R, lies in the open interval.
+void narrow(std::vector<unsigned char>& mask, std::span<const float> reference,
+            std::pair<float, float> range) {
+  const auto [low, high] = range;
+  for (std::size_t i = 0; i < mask.size(); ++i) {
+    if (!(reference[3 * i] > low && reference[3 * i] < high)) mask[i] = 0;
+  }
+}
+
+std::size_t comparedPixels(const Comparison& result) {
+  return static_cast<std::size_t>(std::count(result.mask.begin(), result.mask.end(), 1));
+}
+
+/// What is known of the compared pixels: all metrics but their number and the masked share. `x` and `r` are
+/// R, G, B of the two pictures.
+void evaluate(std::span<const float> x, std::span<const float> r, const Image& reference,
+              Comparison& result) {
+  ErrorSums(x, r, result.width, result.height, result.mask).evaluate(result.metrics);
+  result.metrics.flip = meanFlip(result);
+  result.metrics.noise_floor = noiseFloor(reference, r, result);
+}
+
+}  // namespace
+
+Comparison compareImagesDetailed(const Image& image, const Image& reference, const CompareOptions& options) {
+  checkComparable(image, reference);
   const std::vector<float> x = finiteRgb(image, "image");
   const std::vector<float> r = finiteRgb(reference, "reference");
   Comparison result;
+  result.width = image.width();
+  result.height = image.height();
   result.mask.assign(image.pixelCount(), 1);
   if (options.useMask) applySurfaceMask(image, reference, options, result);
-  if (options.maskTermRange) {
-    const auto [low, high] = *options.maskTermRange;
-    for (std::size_t i = 0; i < result.mask.size(); ++i) {
-      if (!(r[3 * i] > low && r[3 * i] < high)) result.mask[i] = 0;
-    }
-  }
-  result.metrics.pixels = static_cast<std::size_t>(std::count(result.mask.begin(), result.mask.end(), 1));
+  if (options.maskTermRange) narrow(result.mask, r, *options.maskTermRange);
+  result.metrics.pixels = comparedPixels(result);
   if (result.metrics.pixels == 0) throw Error("compare: no pixel is left to compare");
-  ErrorSums(x, r, image.width(), image.height(), result.mask).evaluate(result.metrics);
-  evaluateFlip(x, r, image.width(), image.height(), options.exposureEv, result);
-  result.metrics.noise_floor = noiseFloor(reference, r, result);
+  result.flipMap = flipMap(displayed(x, options.exposureEv), displayed(r, options.exposureEv), result.width,
+                           result.height);
+  evaluate(x, r, reference, result);
   return result;
 }
 
 Metrics compareImages(const Image& image, const Image& reference, const CompareOptions& options) {
   return compareImagesDetailed(image, reference, options).metrics;
+}
+
+std::optional<Metrics> metricsWithin(const Image& image, const Image& reference, const Comparison& whole,
+                                     std::pair<float, float> range) {
+  checkComparable(image, reference);
+  if (whole.width != image.width() || whole.height != image.height())
+    throw Error(fmt::format("compare: the image has {}x{} pixels, the comparison {}x{}; they must be equal",
+                            image.width(), image.height(), whole.width, whole.height));
+  const std::vector<float> x = finiteRgb(image, "image");
+  const std::vector<float> r = finiteRgb(reference, "reference");
+  Comparison part = whole;
+  narrow(part.mask, r, range);
+  part.metrics.pixels = comparedPixels(part);
+  if (part.metrics.pixels == 0) return std::nullopt;
+  evaluate(x, r, reference, part);
+  return part.metrics;
 }
 
 }  // namespace limn

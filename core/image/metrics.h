@@ -41,6 +41,7 @@ struct CompareOptions {
 
 struct Comparison {
   Metrics metrics;
+  int width = 0, height = 0;        ///< pixels
   std::vector<float> flipMap;       ///< per pixel, 0 where masked
   std::vector<unsigned char> mask;  ///< 1 where compared
 };
@@ -57,9 +58,15 @@ LIMN_API Comparison compareImagesDetailed(const Image& image, const Image& refer
 LIMN_API Metrics compareImages(const Image& image, const Image& reference,
                                const CompareOptions& options = {});
 
-/// Returns the FLIP map in false colour (black = equal, light yellow = 1; grey = masked), as linear R, G, B
-/// for writePng().
-LIMN_API Image differenceImage(const Image& image, const Image& reference,
-                               const CompareOptions& options = {});
+/// Returns the metrics over those compared pixels of `whole` whose reference, R, lies in the open interval
+/// `range`: what compareImages() gives with that maskTermRange, without computing masks and FLIP again.
+/// `whole` is what compareImagesDetailed() gave for the same pictures. Returns nullopt where no pixel is
+/// left. Throws Error for pictures of another size, and where compareImages() does.
+LIMN_API std::optional<Metrics> metricsWithin(const Image& image, const Image& reference,
+                                              const Comparison& whole, std::pair<float, float> range);
+
+/// Returns the comparison's FLIP map in false colour (black = equal, light yellow = 1; grey = masked), as
+/// linear R, G, B for writePng().
+LIMN_API Image differenceImage(const Comparison& comparison);
 
 }  // namespace limn

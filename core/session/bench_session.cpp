@@ -105,7 +105,7 @@ reference::Request BenchSession::request(const bench::Case& c, Term term, int li
 bench::Reference BenchSession::reference(const bench::Case& c) {
   const reference::Request asked = request(c, parseTerm(c.term), load(c).view.light);
   reference::Result result = cache_.render(asked);
-  const fs::path file = cache_.pathOf(reference::contentHash(asked));
+  const fs::path file = cache_.pathOf(result.image.metadata().at("content_hash"));
   if (c.picture) keepPicture(file.stem().string(), result.image);
   return {std::move(result.image), fs::path("references") / file.filename(), result.noiseRms, result.seconds};
 }

@@ -116,7 +116,8 @@ class GoldenTest : public PictureTest {
     }
     fs::rename(ownFile, actualFile);
     fs::copy_file(golden, failed / (name + ".expected.png"), fs::copy_options::overwrite_existing);
-    writePng(failed / (name + ".difference.png"), differenceImage(readImage(actualFile), readImage(golden)));
+    writePng(failed / (name + ".difference.png"),
+             differenceImage(compareImagesDetailed(readImage(actualFile), readImage(golden))));
   }
 };
 

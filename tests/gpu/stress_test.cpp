@@ -153,6 +153,19 @@ TEST_F(StressTest, ATechniqueBesideAddsItsLight) {
   EXPECT_THAT(typo.worst().message, testing::HasSubstr("airlihgt"));
 }
 
+/// As every other picture: with the first frame of a sequence alone a setting of its history would do
+/// nothing.
+TEST_F(StressTest, PicturesAverageTheFramesOfTheirHistory) {
+  bench::StressRun run = stressRun(64);
+  const TechniquePlugin& rays = registry().find("ray_traced_area_light");
+  const auto errorOf = [&](const char* settings) {
+    return run.run(rays, {.name = "few rays", .settings = settings}, true).worst().error;
+  };
+  const double one = errorOf("rays=1 filter=none"), many = errorOf("rays=1 filter=none history=16");
+  EXPECT_GT(many, 0);
+  EXPECT_LT(many, 0.5 * one);  // a quarter, where rays are independent
+}
+
 TEST_F(StressTest, VerdictsFollowWhatHappened) {
   bench::StressRun run = stressRun();
   const TechniquePlugin& hard = registry().find("hard_shadow_map");

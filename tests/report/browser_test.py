@@ -209,8 +209,8 @@ def answers_for_a_budget(browser):
     check((out / "command.png").is_file(), "the command does not render")
 
     noisy = [json.loads(json.dumps(row)) for row in rows]
-    for row in noisy:
-        row["penumbra"]["noise_floor"] = 1
+    for i, row in enumerate(noisy):
+        row["penumbra"].update(noise_floor=1, rmse=1e-5 * 10 ** i)
     with reported(noisy):
         browser.open(page)
         browser.evaluate("""(s => { s.value = 'error'; s.dispatchEvent(new Event('change')); })(
@@ -218,6 +218,8 @@ def answers_for_a_budget(browser):
         slide(browser, ".take", 0)
         text = browser.evaluate("document.querySelector('.take p').textContent")
         check(f"Take {setting(min(rows, key=time))} " in text and "<1" in text, f"of errors below the noise: {text}")
+        equal = browser.evaluate("document.querySelector('.equal-error').textContent")
+        check("RMSE in the penumbra: 1," in equal and "Not near it" not in equal, f"errors below the noise differ: {equal}")
 
     others = [json.loads(json.dumps(row)) for row in rows]
     for row in others:

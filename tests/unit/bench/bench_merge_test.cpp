@@ -42,6 +42,24 @@ TEST_F(BenchMerge, FoldersAreMerged) {
       << "results.jsonl, references/ and the reference: nothing from outside of the folders";
 }
 
+/// Whatever a foreign row calls its picture, the folder keeps its own rows and pages.
+TEST_F(BenchMerge, OnlyPicturesAndReferencesAreBrought) {
+  const fs::path part = folder_ / "part", all = folder_ / "all";
+  for (const fs::path& folder : {part, all}) fs::create_directories(folder);
+  Row own = exampleRow(exampleCase("pcss", 4)), foreign = exampleRow(exampleCase("pcss", 16));
+  foreign.picture = "results.jsonl";
+  foreign.difference = "notes.txt";
+  foreign.referenceFile = "part.sh";
+  for (const char* file : {"notes.txt", "part.sh"}) writeTextFile(part / file, "foreign");
+  ResultsFile(part / "results.jsonl").append(foreign);
+  ResultsFile(all / "results.jsonl").append(own);
+  writeTextFile(all / "notes.txt", "own");
+  EXPECT_EQ(mergeResults(std::array{part}, all, {}), 1);
+  EXPECT_EQ(readRows(all / "results.jsonl").size(), 2u);
+  EXPECT_EQ(readTextFile(all / "notes.txt"), "own");
+  EXPECT_FALSE(fs::exists(all / "part.sh"));
+}
+
 /// Parts measured at different times and by different programs: the order of merging does not count.
 TEST_F(BenchMerge, MergingTakesWhatIsValidNowAndOfMoreTurns) {
   const Provenance then{"program 1", "scene", {}}, now{"program 2", "scene", {}};

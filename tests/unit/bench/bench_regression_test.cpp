@@ -119,6 +119,19 @@ TEST(RatioOfMedians, OneSampleHasNoInterval) {
   EXPECT_EQ(ratio.high, 2);
 }
 
+/// Rows of unknown origin may say that a frame took no time, less than none or for ever. Ratios that are no
+/// numbers have no order in which they could be sorted.
+TEST(RatioOfMedians, TimesOfAnyKindHaveAFiniteRatio) {
+  const std::vector<double> none = {0, 0, 0}, some = {0, 2, 4}, other = {-1, 2, 1e308};
+  for (const std::vector<double>* above : {&none, &some, &other})
+    for (const std::vector<double>* below : {&none, &some, &other}) {
+      const Ratio ratio = ratioOfMedians({*above}, {*below});
+      for (const double value : {ratio.value, ratio.low, ratio.high}) EXPECT_TRUE(std::isfinite(value));
+      EXPECT_TRUE(ratio.low <= ratio.value && ratio.value <= ratio.high);
+    }
+  EXPECT_EQ(ratioOfMedians({none}, {none}).value, 1);
+}
+
 Row row(const std::string& technique, double rmse, double ms) {
   Row row;
   row.what.scene = "balls";

@@ -306,6 +306,15 @@ TEST_F(BenchReport, PicturesBeyondTheBudgetAreCompressedThenReduced) {
   EXPECT_EQ(small.window(files[0], {44, 0, 8, 8}), -1) << "beyond the picture";
 }
 
+TEST_F(BenchReport, PicturesLongerThanAWebpMayBeAreReduced) {
+  const std::vector<std::string> files = {"pictures/long.png"};
+  writePng(results() / files[0], Image::rgb(16384, 1));
+  EmbeddedPictures pictures(results(), files, fs::file_size(results() / files[0]) / 2);
+  EXPECT_EQ(pictures.reduction(), 1);
+  EXPECT_EQ(pictures.whole(files[0]), 0);
+  EXPECT_TRUE(pictures.uris().at(0).starts_with("data:image/webp;base64,UklGR"));
+}
+
 TEST_F(BenchReport, ThumbnailsHaveAtMost192Pixels) {
   const auto thumbnail = [&](int width, int height) {
     writePng(results() / "pictures/black.png", Image::rgb(width, height));

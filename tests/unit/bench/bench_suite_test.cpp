@@ -57,6 +57,11 @@ TEST(BenchSuite, DeepNestingIsRefusedBeforeParsing) {
   expectUsageError("sizes=[]\n" + dotted + "=1\n", "s.toml:2: nested deeper than 16 levels");
   expectUsageError("[" + dotted + "]\n", "s.toml:1: nested deeper than 16 levels");
   expectUsageError("name=" + std::string(50'000, '['), "s.toml:1: nested deeper than 16 levels");
+  // A text of several lines may end in quotes of its own: they begin no other text, which would hide what
+  // follows.
+  for (const char* text : {R"("""a"""")", R"("""a""""")", "'''a''''", "'''a'''''"})
+    expectUsageError("scene = {name = " + std::string(text) + ", " + dotted + " = 1}\n",
+                     "s.toml:1: nested deeper than 16 levels");
   // Strings and comments may say what they like.
   const std::string dots(100, '.'), brackets(100, '[');
   expectUsageError(

@@ -6,10 +6,13 @@
 #include <functional>
 #include <limits>
 #include <nlohmann/json.hpp>
+#include <optional>
 #include <random>
+#include <utility>
 
 #include "core/base/error.h"
 #include "core/image/compare_report.h"
+#include "core/image/metric_table.h"
 
 namespace limn {
 namespace {
@@ -302,13 +305,40 @@ TEST(Metrics, NoiseFloorIsThatOfTheComparedPixels) {
   EXPECT_NO_THROW(compareImages(image, reference, penumbra)) << "that pixel is not compared";
 }
 
+/// What is known of the whole pictures serves a part of them to the bit.
+TEST(Metrics, APartOfAComparisonIsAsOneOfItsOwn) {
+  Image reference = withSurface(filled(40, 30, 0.0f)), image = reference;
+  std::mt19937 generator(5);
+  std::uniform_real_distribution<float> uniform;
+  for (Image* picture : {&reference, &image})
+    for (int y = 0; y < 30; ++y)
+      for (int x = 0; x < 40; ++x)
+        for (int c = 0; c < 3; ++c) picture->at(x, y, c) = uniform(generator);
+  image.at(3, 4, image.channel("id")) = 2.0f;
+  reference.metadata()["noise_rms"] = "0.01";
+  const std::pair range(0.2f, 0.7f);
+  CompareOptions options;
+  options.exposureEv = 1;
+  const Comparison whole = compareImagesDetailed(image, reference, options);
+  const std::optional<Metrics> part = metricsWithin(image, reference, whole, range);
+  ASSERT_TRUE(part);
+  options.maskTermRange = range;
+  const Metrics alone = compareImages(image, reference, options);
+  EXPECT_LT(part->pixels, whole.metrics.pixels);
+  for (const MetricInfo& info : kMetrics)
+    EXPECT_EQ(metricValue(info, *part), metricValue(info, alone)) << info.key;
+  EXPECT_FALSE(metricsWithin(image, reference, whole, {2.0f, 3.0f}));
+  const Image small = filled(8, 8, 0.5f);
+  expectError([&] { metricsWithin(small, small, whole, range); }, "the comparison 40x30");
+}
+
 TEST(Metrics, DifferencePictureIsDarkWhereEqual) {
   const Image reference = filled(64, 64, 0.2f);
   Image image = reference;
   for (int y = 0; y < 64; ++y) {
     for (int x = 40; x < 64; ++x) image.at(x, y, 0) = 1.0f;
   }
-  const Image picture = differenceImage(image, reference);
+  const Image picture = differenceImage(compareImagesDetailed(image, reference));
   EXPECT_LT(picture.at(5, 30, 0), 0.01f);
   EXPECT_GT(picture.at(60, 30, 0), 0.2f);
 }
