@@ -169,8 +169,7 @@ FrameGraph::~FrameGraph() = default;
 TextureHandle FrameGraph::createTexture(std::string_view name, const gpu::TextureDesc& desc) {
   Resource resource;
   resource.name = name;
-  resource.textureDesc = desc;
-  if (desc.levels == 0) resource.textureDesc.levels = gpu::fullMipLevels(desc.width, desc.height);
+  resource.textureDesc = gpu::resolved(desc);
   return add<TextureHandle>(*implementation_, std::move(resource));
 }
 

@@ -4,6 +4,7 @@
 
 #include <cmath>
 #include <cstring>
+#include <limits>
 
 #include "core/base/text.h"
 
@@ -33,6 +34,15 @@ std::string choicesProblem(const Parameter& p) {
   return {};
 }
 
+/// ParameterValues::integer() returns an int.
+std::string wholeProblem(const Parameter& p) {
+  constexpr double least = std::numeric_limits<int>::min(), most = std::numeric_limits<int>::max();
+  for (const double value : {p.range.low, p.range.high, p.defaultValue})
+    if (!(value >= least && value <= most) || value != std::floor(value))
+      return fmt::format("has {} where a whole number of 32 bits is expected", value);
+  return {};
+}
+
 std::string parameterProblem(const Parameter& p) {
   if (!isText(p.unit) || !isText(p.doc)) return "has no unit or description";
   if (p.forcing && !isText(p.forcing)) return "has no end to its forcing value";
@@ -42,9 +52,10 @@ std::string parameterProblem(const Parameter& p) {
     return fmt::format("has the default {} outside of {}..{}", p.defaultValue, p.range.low, p.range.high);
   switch (p.type) {
     case ParameterType::boolean:
-    case ParameterType::integer:
     case ParameterType::real:
       return {};
+    case ParameterType::integer:
+      return wholeProblem(p);
     case ParameterType::choice:
       return choicesProblem(p);
   }

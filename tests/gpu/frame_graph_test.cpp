@@ -226,25 +226,32 @@ class UpdatedBuffers : public FrameGraphGpu {
 
 /// Views of shadow maps are such a buffer: maps are drawn with it as a storage block, and read with it as a
 /// uniform block. Lights are another, a storage block of several passes. What a frame that is given up wrote
-/// there is written over before anybody reads it.
+/// there is written over before anybody reads it. Before that a pass draws with another uniform block, as the
+/// one that fills the G-buffer does.
 TEST_F(UpdatedBuffers, areReadAsTheyWereUpdatedLast) {
   shaders().mount("techniques/updated/", kUpdatedSources);
   constexpr Read uniform{Access::uniformBuffer, false}, storage{Access::storageLoad, false},
-      drawn{Access::storageLoad, true};
+      drawn{Access::storageLoad, true}, camera{Access::uniformBuffer, true};
   const std::vector<std::vector<Read>> all{{uniform},          {storage},        {drawn},
                                            {storage, uniform}, {drawn, uniform}, {drawn, storage},
                                            {storage, storage}};
-  for (const std::vector<Read>& reads : all) {
+  for (std::vector<Read> reads : all) {
+    reads.insert(reads.begin(), camera);
     auto held = gpu::Buffer::of<Value>(device(), "held", full(0), gpu::BufferUse::updated);
+    auto frame = gpu::Buffer::of<Value>(device(), "frame", full(0), gpu::BufferUse::updated);
     FrameGraph graph;
-    const BufferHandle imported = graph.importBuffer("held", held);
+    const BufferHandle imported = graph.importBuffer("held", held),
+                       importedFrame = graph.importBuffer("frame", frame);
     const auto update = [&](uint32_t value) {
-      held.update(0, full(value).data(), kCount * sizeof(Value));
+      const std::vector<Value> values = full(value);
+      for (gpu::Buffer* buffer : {&frame, &held}) buffer->update(0, values.data(), kCount * sizeof(Value));
+      graph.touch(importedFrame);
       graph.touch(imported);
     };
     graph.output(set(graph, "first", 1));
     std::vector<Seen> seen;
-    for (const Read& read : reads) seen.push_back(see(graph, imported, read));
+    for (size_t i = 0; i < reads.size(); ++i)
+      seen.push_back(see(graph, i == 0 ? importedFrame : imported, reads[i]));
     prepare(graph);
     graph.execute();
     for (size_t ranBefore = 0; ranBefore <= reads.size(); ++ranBefore) {  // passes of what is given up

@@ -332,6 +332,9 @@ TEST(FrameGraphMemory, MipChainsAreResolvedInTheDescription) {
   gpu::TextureDesc full = kResult;
   full.levels = 0;
   EXPECT_EQ(graph.desc(graph.createTexture("chain", full)).levels, 7);
+  const gpu::TextureDesc volume{
+      .target = GL_TEXTURE_3D, .format = GL_R32F, .width = 8, .height = 4, .layers = 64, .levels = 0};
+  EXPECT_EQ(graph.desc(graph.createTexture("volume", volume)).levels, 7) << "depths are halved, too";
 }
 
 TEST(FrameGraphReport, BytesCountWithTheFirstWriter) {

@@ -8,13 +8,13 @@
 namespace limn {
 namespace {
 
-/// What is wrong with a technique that answers these terms and is right otherwise.
-std::string problemOf(TermSet terms) {
+/// What is wrong with a technique that answers these terms, has these parameters and is right otherwise.
+std::string problemOf(TermSet terms, std::span<const Parameter> parameters = {}) {
   const TechniqueInfo info{.name = "probe",
                            .title = "A probe",
                            .source = "a test",
                            .terms = terms,
-                           .parameters = {},
+                           .parameters = parameters,
                            .stress = {}};
   TechniquePlugin plugin{};
   plugin.info = &info;
@@ -37,6 +37,19 @@ TEST(PluginCheck, NoTermsAndUnknownOnesAreRefused) {
     if (known) continue;
     EXPECT_THAT(problemOf(termSet(Term::direct) | bit), testing::HasSubstr("none or not known")) << bit;
   }
+}
+
+TEST(PluginCheck, WholeNumbersAreThoseOfAnInt) {
+  const auto problemOfInteger = [](double value, ParameterRange range) {
+    Parameter parameter = integer("count", 0, range, "", "How many");
+    parameter.defaultValue = value;
+    return problemOf(termSet(Term::direct), {&parameter, 1});
+  };
+  EXPECT_EQ(problemOfInteger(1, {-2147483648.0, 2147483647.0}), "");
+  const std::string wanted = " where a whole number of 32 bits is expected";
+  EXPECT_THAT(problemOfInteger(1, {0, 3e9}), testing::EndsWith(wanted));
+  EXPECT_EQ(problemOfInteger(1, {0.5, 2}), "its parameter count has 0.5" + wanted);
+  EXPECT_EQ(problemOfInteger(1.5, {0, 2}), "its parameter count has 1.5" + wanted);
 }
 
 }  // namespace
