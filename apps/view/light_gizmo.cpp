@@ -1,6 +1,8 @@
 // Lights in the picture: marks to choose one by, and the chosen one's handles.
 #include <imgui.h>
 
+#include <algorithm>
+
 #include "apps/view/viewer_style.h"
 #include "apps/view/viewer_window.h"
 
@@ -66,7 +68,19 @@ ScreenCamera ViewerWindow::screen() const {
 
 void ViewerWindow::chooseLight(int light) {
   chosenLight_ = light;
+  chosenName_ = light < 0 ? std::string() : facts_->lights[static_cast<size_t>(light)].name;
   drag_.reset();
+}
+
+/// Finds the chosen light in the newest facts: those behind a mesh that an animation has scaled to nothing
+/// have other numbers there.
+void ViewerWindow::findChosenLight() {
+  const auto found = std::ranges::find(facts_->lights, chosenName_, &LightFacts::name);
+  const bool gone = chosenName_.empty() || found == facts_->lights.end();
+  chosenLight_ = gone ? scene::kNone : static_cast<int>(found - facts_->lights.begin());
+  if (!gone || !drag_) return;
+  drag_.reset();
+  markHeld_ = true;  // until it is let go, the hand turns no camera
 }
 
 void ViewerWindow::editLight(const LightFacts& light, const session::LightEdit& edit) {

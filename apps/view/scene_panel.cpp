@@ -220,9 +220,9 @@ void ViewerWindow::environmentPanel() {
     const auto offer = [&](const std::string& entry, const fs::path& file) {
       if (ImGui::Selectable(entry.c_str(), file == now)) wanted.environment = file.string();
     };
-    offer("none", {});
+    offer("by default", {});  // the scene's own or that of the default lights, where it has one
     for (const char* own : {"sky", "studio"}) offer(own, own);
-    const fs::path folder = now.has_parent_path() ? now.parent_path() : fs::path(".");
+    const fs::path folder = now.parent_path();  // empty: the working folder, as in names without one
     for (const fs::path& name : listFolder(folder).files)
       if (scene::isEnvironmentFile(name)) offer(name.string(), folder / name);
     ImGui::EndCombo();

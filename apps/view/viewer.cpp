@@ -200,7 +200,7 @@ void ViewerWindow::adopt(const SceneFacts& scene, const SceneFacts* before) {
   if (sameViewpoint(state_.scene, scene.options) && (another || state_.scene.eye.empty()))
     orbit_ = Orbit(scene.camera, scene.bounds);
   lightEdits_ = session::parseLightEdits(state_.scene.lightSettings);
-  chosenLight_ = scene::kNone;
+  chosenName_.clear();
   measured_.clear();
   budgetOf_.clear();  // also where the same file is shown again: with another floor, or read again
   tuneProblem_.clear();
@@ -256,6 +256,7 @@ void ViewerWindow::takeFacts() {
     opening_.reset();
   }
   if (facts_->scene && facts_->scene != shown) adopt(*facts_->scene, shown.get());
+  findChosenLight();
   if (facts_->messages != messagesSeen_) say(facts_->message, facts_->problem);
   messagesSeen_ = facts_->messages;
 }

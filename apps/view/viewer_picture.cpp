@@ -125,7 +125,7 @@ void ViewerWindow::press(const KeyPress& pressed) {
   if (key == GLFW_KEY_F8) inspectNext();
   if (key == GLFW_KEY_F9) showDifference_ = !showDifference_;
   if (key == GLFW_KEY_F10) saveSequence();
-  if (key == GLFW_KEY_ESCAPE && !browsing_) {  // it closes the dialog alone
+  if (key == GLFW_KEY_ESCAPE) {
     inspection_.reset();
     message_.clear();
   }
@@ -134,6 +134,7 @@ void ViewerWindow::press(const KeyPress& pressed) {
 }
 
 /// What is pressed while the first scene is being opened waits for it, unless it is typed into a text field.
+/// Behind the dialog only function keys are answered.
 void ViewerWindow::handleKeys() {
   if (ImGui::GetIO().WantTextInput) pressed_.clear();
   if (!facts_->scene) {
@@ -141,7 +142,8 @@ void ViewerWindow::handleKeys() {
     if (!opening_) pressed_.clear();
     return;
   }
-  for (const KeyPress& key : pressed_) press(key);
+  for (const KeyPress& pressed : pressed_)
+    if (!browsing_ || (pressed.key >= GLFW_KEY_F1 && pressed.key <= GLFW_KEY_F25)) press(pressed);
   pressed_.clear();
 }
 

@@ -89,6 +89,7 @@ class ViewerWindow {
   void drawLights();
   bool dragLight();  ///< true while the gizmo uses the mouse
   void chooseLight(int light);
+  void findChosenLight();
   void editLight(const LightFacts& light, const session::LightEdit& edit);
 
   // --- panels
@@ -162,8 +163,9 @@ class ViewerWindow {
   bool showDifference_ = false;  ///< instead of the right part
   std::optional<InspectionOrder> inspection_;
   session::LightEdits lightEdits_;
-  int chosenLight_ = scene::kNone;
-  bool lightsNew_ = true;  ///< of a scene whose changed light, if there is one, is chosen at first
+  std::string chosenName_;          ///< of a light; empty: none is chosen
+  int chosenLight_ = scene::kNone;  ///< its place among facts_->lights; none where it has vanished
+  bool lightsNew_ = true;           ///< of a scene whose changed light, if there is one, is chosen at first
   GizmoMode gizmoMode_ = GizmoMode::move;
   std::optional<GizmoDrag> drag_;
   bool markHeld_ = false;  ///< the mouse has been down since it chose a light by its mark

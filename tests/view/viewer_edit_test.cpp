@@ -188,6 +188,36 @@ TEST_F(ViewerEditTest, BrighterLightsStillFollowTheirAnimation) {
                                                       testing::Not(testing::HasSubstr("lamp.position"))));
 }
 
+/// The light that is chosen stays so while an animation scales one before it to nothing, which is none then.
+TEST_F(ViewerEditTest, TheChosenLightStaysWhenOneBeforeItVanishes) {
+  GltfBuilder scene;
+  scene.triangle();
+  const int glow = scene.append("materials", {{"emissiveFactor", {1, 1, 1}}});
+  const int corners = scene.vec3({{0, 0, 0}, {0.2f, 0, 0}, {0.2f, 0.2f, 0}, {0, 0.2f, 0}});
+  const int quad = scene.indices({0, 1, 2, 0, 2, 3});
+  const auto lamp = [&](const char* name, double x) {
+    const int mesh = scene.mesh({{"POSITION", corners}}, quad, glow);
+    return scene.node({{"name", name}, {"mesh", mesh}, {"translation", {x, 1.0, 1.0}}});
+  };
+  const int first = lamp("first", -0.5);
+  lamp("second", 0);
+  lamp("third", 0.5);
+  const int times = scene.floats({0, 1, 60}), sizes = scene.vec3({{1, 1, 1}, {0, 0, 0}, {0, 0, 0}});
+  scene.append(
+      "animations",
+      {{"samplers", json::array({{{"input", times}, {"output", sizes}}})},
+       {"channels", json::array({{{"sampler", 0}, {"target", {{"node", first}, {"path", "scale"}}}}})}});
+  writeFile(folder_ / "lamps.glb", scene.glb());
+  const Outcome outcome = view(
+      "lamps.glb --technique hard_shadow_map --set-light second.intensity=2 --size 160x500 --open lights "
+      "--save a.exr",
+      "save first.exr; xdotool key space; frames 2; sleep 2; xdotool key space; frames 2\n" +
+          type("270 330", "7") + "save brighter.exr");
+  ASSERT_EQ(outcome.status, 0) << outcome.err;
+  EXPECT_THAT(command("brighter.exr"), testing::AllOf(testing::HasSubstr("second.intensity=7"),
+                                                      testing::Not(testing::HasSubstr("third."))));
+}
+
 /// Numbers that are dragged have the digits of a scene of a centimetre.
 TEST_F(ViewerEditTest, LightsOfSmallScenesMoveByLessThanAMillimetre) {
   GltfBuilder scene;

@@ -92,7 +92,7 @@ TEST_F(ViewerInputTest, ChoosesEnvironments) {
   const Outcome outcome =
       view("cornell_box --technique hard_shadow_map --size 160x312 --open environment --save a.exr", script);
   ASSERT_EQ(outcome.status, 0) << outcome.err;
-  EXPECT_THAT(command("seen.exr"), testing::HasSubstr("--environment ./0.exr"));
+  EXPECT_THAT(command("seen.exr"), testing::HasSubstr("--environment 0.exr"));
   EXPECT_THAT(command("sky.exr"), testing::HasSubstr("--environment sky"));
   EXPECT_EQ(colours(picture("seen.exr")), colours(picture("sky.exr"))) << "the same map";
   EXPECT_NE(colours(picture("sky.exr")), colours(picture("none.exr")));
@@ -190,6 +190,17 @@ TEST_F(ViewerInputTest, EscapeInTheDialogLeavesTheInspector) {
   };
   const std::vector<float> without = shown("xdotool key Escape; frames 2\n");
   EXPECT_NE(shown("xdotool key ctrl+o; frames 2; xdotool key Escape; frames 2\n"), without);
+}
+
+/// Nor is anything undone behind it.
+TEST_F(ViewerInputTest, TheDialogLeavesWhatIsBehindIt) {
+  const Outcome outcome =
+      view("cornell_box --technique hard_shadow_map --size 160x212 --save a.exr",
+           std::string(kDrag) + "save moved.exr; sleep 1; xdotool key ctrl+o; frames 2\n" +
+               "xdotool key ctrl+z; frames 2; xdotool key Escape; frames 2; save after.exr");
+  ASSERT_EQ(outcome.status, 0) << outcome.err;
+  EXPECT_EQ(outcome.err, "");
+  EXPECT_EQ(command("after.exr"), command("moved.exr"));
 }
 
 TEST_F(ViewerInputTest, WithoutADisplayAdvisesWhatWorks) {
