@@ -1,12 +1,12 @@
 # limn_embed(TARGET FUNCTION ROOT FILES...): compiles text files into TARGET behind `FUNCTION()`.
-# limn_interface_hash(TARGET FUNCTION): compiles into TARGET, behind `FUNCTION()`, a hash of limn's interface as it is now (module_headers.py).
+# limn_interface_hash(TARGET FUNCTION): compiles a hash of limn's interface as it is now (module_headers.py) into TARGET, likewise.
 # limn_add_technique(NAME [FOLDER]): builds the *.cpp and *.glsl of FOLDER (default: the current one) to lib/limn/techniques,
 # as Release where no build type is chosen.
 # Where the folder has a technique.cmake, it is included afterwards: it may link technique_NAME to further libraries.
 # All are installed, so that an out-of-tree technique is built by the same call.
 #
 # LIMN_INCLUDE_ROOTS are the folders that "core/..." and "glsl/..." are looked up in: limn's source tree and what it
-# generates, or the installed headers.
+# generates, or the installed headers. LIMN_INSTALL_LIBDIR is the folder of liblimn in the prefix.
 
 set(LIMN_EMBED_SCRIPT ${CMAKE_CURRENT_LIST_DIR}/embed.py)
 set(LIMN_MODULE_HEADERS_SCRIPT ${CMAKE_CURRENT_LIST_DIR}/module_headers.py)
@@ -63,5 +63,5 @@ function(limn_add_technique name)
   limn_interface_hash(technique_${name} limn_technique_${name}::interfaceHash)
   limn_embed(technique_${name} limn_technique_${name}::embeddedSources ${folder} ${shaders})
   include(${folder}/technique.cmake OPTIONAL)
-  install(TARGETS technique_${name} LIBRARY DESTINATION ${CMAKE_INSTALL_LIBDIR}/limn/techniques)
+  install(TARGETS technique_${name} LIBRARY DESTINATION ${LIMN_INSTALL_LIBDIR}/limn/techniques)
 endfunction()

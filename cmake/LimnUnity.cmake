@@ -1,6 +1,6 @@
 # Unity builds: sources compiled together, in half the time.
-# LIMN_UNITY: the folders of core and of the programs. scripts/build asks for it where there are no tests, since some of these need
-# commands of single sources.
+# LIMN_UNITY: the folders of core and of the programs. scripts/build asks for it where a new build has no tests: with them each
+# source is compiled alone, so that a missing include shows. A build that is there keeps what it has.
 # LIMN_UNITY_TESTS: the tests, of which a developer compiles one at a time. scripts/build asks for it where there are tests.
 # limn_unite(TARGET GROUP SOURCES...): makes the sources of TARGET such a group. The test structure.unity compiles them so.
 # limn_unite_tests(TARGET SOURCES...): makes groups of up to eight, each of one folder, of the sources of a TARGET of tests.

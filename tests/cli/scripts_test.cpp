@@ -98,6 +98,39 @@ TEST_F(Scripts, GpuRunLeavesNoTableOfAnEarlierRun) {
   EXPECT_FALSE(fs::exists(packed[0] / "bound/gone.csv"));
 }
 
+/// A build with tests compiles nothing again that one without them has compiled.
+TEST_F(Scripts, TestsAreAddedToABuildAsItIs) {
+  writeProgram(
+      folder_ / "programs/cmake",
+      "echo \"$@\" >> " + (folder_ / "said").string() +
+          "\n[ \"$1\" = --build ] || { mkdir -p build; touch build/build.ninja build/CMakeCache.txt; }\n");
+  std::ofstream(root_ / "scripts/packages.txt") << "# none\n";
+  for (const char* arguments : {"", "--tests"}) {
+    const Outcome outcome = call("build", arguments);
+    ASSERT_EQ(outcome.status, 0) << outcome.err;
+  }
+  EXPECT_THAT(said(), testing::AllOf(testing::HasSubstr("-DLIMN_UNITY=ON -DLIMN_BUILD_TESTS=OFF "),
+                                     testing::HasSubstr("-DLIMN_UNITY_TESTS=ON -DLIMN_BUILD_TESTS=ON "),
+                                     testing::Not(testing::HasSubstr("-DLIMN_UNITY=OFF"))));
+}
+
+TEST_F(Scripts, TidyLooksAtSourcesThatAreCompiledTogether) {
+  for (const char* program : {"cmake", "run-clang-tidy"}) writeProgram(folder_ / "programs" / program, "");
+  const fs::path united = root_ / "build/Unity/all.cxx";
+  const std::string one = root_ / "core/one.cpp", other = root_ / "core/other.cpp";
+  fs::create_directory(united.parent_path());
+  std::ofstream(united) << "#include \"" << one << "\"\n#include \"" << other << "\"\n";
+  std::ofstream(root_ / "build/compile_commands.json")
+      << R"([{"directory": "/", "command": "c++ -DA=1 -include /b/cmake_pch.hxx -o Unity/all.o -c )"
+      << united.string() << R"(", "file": ")" << united.string() << R"("}])";
+  const Outcome outcome = call("tidy", "core");
+  ASSERT_EQ(outcome.status, 0) << outcome.err;
+  const std::string commands = contents(root_ / "build/tidy/compile_commands.json");
+  for (const std::string& source : {one, other})
+    EXPECT_THAT(commands, testing::AllOf(testing::HasSubstr("c++ -DA=1 -o Unity/all.o -c " + source),
+                                         testing::HasSubstr("\"file\": \"" + source)));
+}
+
 TEST_F(Scripts, TryPackageLeavesAFolderThatIsNoSystem) {
   if (geteuid() != 0) GTEST_SKIP() << "only root can make a system";
   std::ofstream(caller_ / "limn.deb") << "no package";

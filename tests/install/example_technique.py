@@ -16,7 +16,8 @@ for project in ("example_technique", "loader"):
 run(loader, built, "example_technique")
 check("example_technique" in techniques(prefix, LIMN_TECHNIQUE_PATH=str(built)), "not found through LIMN_TECHNIQUE_PATH")
 
-# It is installed beside limn's own, and renders: V = 0.25 everywhere the light counts.
+# It is installed beside limn's own, whatever folder of libraries its project has, and renders: V = 0.25 wherever the light counts.
+run("cmake", scratch / "example_technique", "-DCMAKE_INSTALL_LIBDIR=elsewhere")
 run("cmake", "--install", scratch / "example_technique", "--prefix", prefix)
 run(loader, installed, "example_technique")
 picture = scratch / "v.exr"

@@ -9,7 +9,7 @@ NAME = "stamped_2nd"
 scratch = fresh("new_technique")
 stamp = SOURCE / "scripts/new-technique"
 
-run(stamp, NAME, "--into", scratch)
+printed, _ = run(stamp, NAME, "--into", scratch)
 folder = scratch / NAME
 files = sorted(folder.iterdir())
 lines = sum(len(file.read_text().splitlines()) for file in files)
@@ -29,6 +29,8 @@ check(not list(scratch.glob(".*")), "something was left behind")
 section = (SOURCE / "README.md").read_text().split("## A technique of your own")[1]
 project = re.search("```cmake\n(.*?)```", section, re.DOTALL)[1]
 (scratch / "CMakeLists.txt").write_text(project.replace("other_technique other_technique", f"{NAME} {NAME}"))
+for told in (printed, section):
+    check(" -G Ninja " in told, "a command for cmake takes make, which scripts/build does not install")
 documented = re.search(r"LIMN_TECHNIQUE_PATH=\$HOME/my_techniques/(\S+)", section)[1]
 build(scratch, scratch / "build")
 path = {"LIMN_TECHNIQUE_PATH": str(scratch / documented)}
