@@ -278,7 +278,7 @@ Json rowProperties() {
   return properties;
 }
 
-std::string schema(const char* title, Json body) {
+std::string schema(const char* title, const Json& body) {
   Json json = {{"$schema", kDialect}, {"title", title}};
   json.update(body);
   return json.dump(2) + "\n";
@@ -291,7 +291,7 @@ std::string rowSchema() {
   row["properties"] = rowProperties();
   row["required"] = {"scene", "technique", "parameters", "term", "size", "key", "reference"};
   row["oneOf"] = Json::array({{{"required", {"error", "stats"}}}, {{"required", {"failure", "renderer"}}}});
-  return schema("limn: a row of results.jsonl", std::move(row));
+  return schema("limn: a row of results.jsonl", row);
 }
 
 std::string statsSchema() {

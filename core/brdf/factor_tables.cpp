@@ -201,6 +201,7 @@ double maskingOfBoth(Masking masking, const Masked& l, const Masked& v) {
 template <class Value>
 auto alongAxis(int texels, const Value& value) {
   std::vector<decltype(value(0.0))> row;
+  row.reserve(static_cast<size_t>(texels));
   for (int i = 0; i < texels; ++i) row.push_back(value(static_cast<double>(i) / (texels - 1)));
   return row;
 }

@@ -51,7 +51,7 @@ std::array<glm::vec4, 4> frustum(const scene::CameraPose& camera, float aspect) 
 
 }  // namespace
 
-VisibleScene::VisibleScene(const scene::Scene& scene) : scene_(scene) {
+VisibleScene::VisibleScene(const scene::Scene& scene) {
   const size_t instances = std::max<size_t>(primitiveInstances(scene), 1);
   int cells = kMostCells;
   while (cells > 1 && instances * static_cast<size_t>(cells * cells * cells) > kMostBoxes) --cells;

@@ -43,7 +43,6 @@ class LIMN_API VisibleScene {
   std::span<const VisiblePart> visible() const { return {visible_.data(), visibleCount_}; }
 
  private:
-  const scene::Scene& scene_;
   std::vector<std::vector<std::vector<scene::Bounds>>> boxes_;  ///< of meshes' primitives, object space
   std::vector<scene::DrawInstance> instances_;  ///< of the last update, as are those that follow
   std::vector<scene::Bounds> instanceBounds_;

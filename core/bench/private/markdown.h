@@ -40,6 +40,7 @@ struct MarkdownColumn {
 template <class Result>
 std::string markdownHead(const std::vector<MarkdownColumn<Result>>& columns) {
   std::vector<MarkdownHead> heads;
+  heads.reserve(columns.size());
   for (const MarkdownColumn<Result>& column : columns) heads.push_back(column.head);
   return markdownHead(heads);
 }
@@ -48,6 +49,7 @@ std::string markdownHead(const std::vector<MarkdownColumn<Result>>& columns) {
 template <class Result>
 std::string markdownRow(const std::vector<MarkdownColumn<Result>>& columns, const Result& result) {
   std::vector<std::string> cells;
+  cells.reserve(columns.size());
   for (const MarkdownColumn<Result>& column : columns) cells.push_back(column.cell(result));
   return markdownRow(cells);
 }
