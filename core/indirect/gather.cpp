@@ -9,6 +9,7 @@
 #include "core/gpu_scene/gpu_scene.h"
 #include "core/gpu_scene/surface_input.h"
 #include "core/scene/draw_instance.h"
+#include "core/shadow/sample_batches.h"
 #include "glsl/indirect/gather.glsl"
 #include "glsl/materials/material_model.glsl"
 
@@ -21,9 +22,6 @@ using frame::TextureHandle;
 constexpr int kGroup = 8;
 constexpr int kSpreadWidth = 8;  // taps to either side of each tent that spreads the residual
 constexpr int kSpreadShare = 8;  // it reaches at least this part of the picture's height
-// llvmpipe leaves all loops of a thread after 65,535 steps in all; the rest is for those around a thread's
-// lights.
-constexpr int kMostSteps = 65000;
 
 /// Of what enters translucent surfaces there is no specular part, though it is not Lambertian either.
 constexpr uint32_t kEntryAlone = 1u << glsl::model_entry;
@@ -39,11 +37,6 @@ bool litAreLambertian(const TechniqueInputs& inputs) {
     return material.lambertian() || material.specularSurface();
   };
   return inputs.handles.modelKinds == 0 && std::ranges::all_of(inputs.pose.instances, isLambertian);
-}
-
-/// Of the renderer itself: it leaves loops whichever paths its device takes.
-bool leavesLoops(const TechniqueInputs& inputs) {
-  return inputs.gpuScene.device().context().info().software;
 }
 
 /// Returns the steps that the loops of a thread take for a light: one, and those in which each of its pixels
@@ -171,8 +164,9 @@ std::vector<ShadePass> Gather::passesOf(const ShadePass& shade, int subBuffers) 
   const int ofLight = stepsOfLight(inputs_, shade.areas > 0 || subBuffers > 1 ? 1 : 4);
   const int ofAreas = std::min(lights, shade.areas) * shade.areaSteps;
   const int ofSubBuffer = lights * ofLight + ofAreas;
-  if (!leavesLoops(inputs_) || ofSubBuffer * subBuffers <= kMostSteps) return {shade};
-  const int together = std::max(kMostSteps / ofSubBuffer, 1);  // sub-buffers
+  const int mostSteps = shadow::mostStepsOfLoops(inputs_);
+  if (ofSubBuffer * subBuffers <= mostSteps) return {shade};
+  const int together = std::max(mostSteps / ofSubBuffer, 1);  // sub-buffers
   std::vector<ShadePass> passes;
   for (int first = shade.first; first < shade.first + shade.count;) {
     const auto count = static_cast<uint32_t>(lights_.count), side = static_cast<uint32_t>(block);
@@ -180,8 +174,8 @@ std::vector<ShadePass> Gather::passesOf(const ShadePass& shade, int subBuffers) 
     const uint32_t next = glsl::gather_begin(subBuffer + static_cast<uint32_t>(together), count, side);
     ShadePass& pass = passes.emplace_back(shade);
     pass.first = first;
-    pass.count = std::min({(kMostSteps - ofAreas) / ofLight, static_cast<int>(next) - first,
-                           shade.first + shade.count - first});
+    pass.count = std::min(
+        {(mostSteps - ofAreas) / ofLight, static_cast<int>(next) - first, shade.first + shade.count - first});
     first += pass.count;
   }
   return passes;
