@@ -95,6 +95,13 @@ RayGeometryService::RayGeometryService(gpu::Device& device, const scene::Scene& 
 RayGeometryService::~RayGeometryService() = default;
 
 void RayGeometryService::begin() {
+  if (!requested_ &&
+      built_) {  // the last graph did without: it would count in the memory of other techniques
+    built_ = false;
+    for (gpu::Buffer* buffer :
+         {&nodeBuffer_, &triangleBuffer_, &bodyBuffer_, &coverageBuffer_, &cornerBuffer_, &refitBuffer_})
+      *buffer = gpu::Buffer();
+  }
   requested_ = false;
 }
 

@@ -129,6 +129,9 @@ const scene::Pose& Renderer::pose() {
 
 Image Renderer::read() const {
   const Implementation& self = *implementation_;
+  // Reading waits for the frame anyway. Its time ends here, not after its picture was written.
+  self.device.gl().Finish();
+  implementation_->services.waited();
   const bool channels = self.settings.channels && self.gbuffer.depth;
   const bool background = showsBackground(self.settings.term, static_cast<bool>(self.scene.environment),
                                           self.scene.medium.present());

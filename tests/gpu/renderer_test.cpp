@@ -101,6 +101,20 @@ TEST_F(RendererTest, forgetsWhatOldShadersLeftInCachedPasses) {
   std::filesystem::remove_all(folder);
 }
 
+/// Rows of a bench are measured one after the other by one renderer.
+TEST_F(RendererTest, whatATechniqueNeededCountsInNoLaterOnesMemory) {
+  const scene::Scene scene = asset("balls");
+  render::Renderer renderer(device(), scene);
+  const auto bytes = [&](const char* name) {
+    const render::Settings shown = settings(40, 30, Term::direct, {technique(name)});
+    for (int graph = 0; graph < 2; ++graph) picture(renderer, shown);
+    return renderer.memoryBytes();
+  };
+  const int64_t before = bytes("hard_shadow_map");
+  bytes("ray_traced_area_light");
+  EXPECT_EQ(bytes("hard_shadow_map"), before);
+}
+
 TEST_F(RendererTest, picturesThatCannotBeReadBackAreRefusedAtOnce) {
   const scene::Scene scene = asset("cornell_box");
   render::Renderer renderer(device(), scene);
