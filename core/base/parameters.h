@@ -42,6 +42,8 @@ struct Parameter {
   /// If not null, the parameter lets the technique leave out work that does not affect the result, and this
   /// value forces that work to be done (core/bench/savings.h).
   const char* forcing = nullptr;
+  /// Says whether, set to another value than the default, pictures depend on how long frames take.
+  bool followsClock = false;
 
   constexpr Parameter quality() const {
     Parameter p = *this;
@@ -56,6 +58,11 @@ struct Parameter {
   constexpr Parameter savesWork(const char* forcingValue) const {
     Parameter p = *this;
     p.forcing = forcingValue;
+    return p;
+  }
+  constexpr Parameter byClock() const {
+    Parameter p = *this;
+    p.followsClock = true;
     return p;
   }
 };

@@ -134,10 +134,11 @@ Image BenchSession::separationFloor(const bench::Case& c) {
   for (size_t light = 0; light < lights; ++light) {
     if (chosen != scene::kNone && static_cast<size_t>(chosen) != light) continue;
     const Image v = cache_.render(request(c, Term::visibility, static_cast<int>(light))).image;
+    const int visible = v.channel("R");
     const Image lit = chosen == scene::kNone ? unshadowed(c, static_cast<int>(light)) : sum;
     for (int y = 0; y < lit.height(); ++y)
       for (int x = 0; x < lit.width(); ++x)
-        for (int i = 0; i < 3; ++i) sum.at(x, y, i) -= lit.at(x, y, i) * (1 - v.at(x, y, v.channel("R")));
+        for (int i = 0; i < 3; ++i) sum.at(x, y, i) -= lit.at(x, y, i) * (1 - v.at(x, y, visible));
   }
   return sum;
 }
@@ -146,6 +147,7 @@ render::Settings BenchSession::settingsOf(const bench::Case& c) {
   Loaded& loaded = load(c);
   render::Settings settings = baseSettings(loaded.view, parseTerm(c.term), loaded.view.light);
   settings.techniques = techniqueChoice(c).resolve(registry_);
+  checkMeasurable(settings.techniques);
   settings.dynamic = c.dynamic;
   return settings;
 }

@@ -87,7 +87,8 @@ std::vector<std::string> missingThings(const std::vector<bench::Case>& cases,
   std::vector<std::vector<const bench::Case*>> scenes;
   std::vector<SceneQuestion> known;
   for (const bench::Case& c : cases) {
-    if (c.technique != bench::kSeparationFloor) lines.find("", [&] { techniqueChoice(c).resolve(registry); });
+    if (c.technique != bench::kSeparationFloor)
+      lines.find("", [&] { checkMeasurable(techniqueChoice(c).resolve(registry)); });
     if (!filesAreThere(c, lines)) continue;
     const auto place = std::ranges::find(known, wholeScene(c));
     const auto index = static_cast<std::size_t>(place - known.begin());

@@ -83,4 +83,19 @@ TechniqueChoice choiceOf(const std::string& techniques,
   return choice;
 }
 
+void checkMeasurable(std::span<const render::TechniqueUse> uses) {
+  for (const render::TechniqueUse& use : uses) {
+    const char* name = use.plugin->info->name;
+    const auto values = use.parameters.printed();
+    const auto defaults = ParameterValues(name, use.parameters.declared()).printed();
+    for (size_t i = 0; i < values.size(); ++i) {
+      if (!use.parameters.declared()[i].followsClock || values[i] == defaults[i]) continue;
+      throw UsageError(
+          fmt::format("{}.{}={}: pictures would follow how long frames take, so that a row's error and its "
+                      "time are of different ones; benches accept {} alone",
+                      name, values[i].first, values[i].second, defaults[i].second));
+    }
+  }
+}
+
 }  // namespace limn::session

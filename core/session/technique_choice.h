@@ -31,4 +31,8 @@ struct TechniqueChoice {
 LIMN_API TechniqueChoice choiceOf(const std::string& techniques,
                                   std::span<const std::pair<std::string, std::string>> parameters);
 
+/// Throws UsageError where pictures would depend on how long frames take: an error measured in one frame and
+/// the time of others would be those of different pictures.
+LIMN_API void checkMeasurable(std::span<const render::TechniqueUse> uses);
+
 }  // namespace limn::session

@@ -1,4 +1,4 @@
-// Terms that a technique is asked for.
+// Terms that a technique is asked for, and parameters that cannot be measured.
 #include "core/session/technique_choice.h"
 
 #include <gmock/gmock.h>
@@ -51,6 +51,33 @@ TEST(AskedFor, RefusesListsThatLackATermOrRepeatOne) {
     EXPECT_EQ(refusedChoice(text), "technique '" + text + "' " + lacks);
   EXPECT_EQ(refusedChoice("several:indirect+indirect"),
             "term indirect of technique several is named twice; once is enough");
+}
+
+/// A budget of time has another level when frames are timed than in the first one, whose error is measured.
+TEST(CheckMeasurable, RefusesWhatFollowsTheClock) {
+  static constexpr Parameter kParameters[] = {
+      integer("lights", 25, {1, 64}, "lights", "Lights"),
+      real("frame_time", 0, {0, 100}, "ms", "Time that a frame may take").byClock()};
+  const TechniqueInfo info{.name = "budgeted",
+                           .title = "",
+                           .source = "",
+                           .terms = termSet(Term::environment),
+                           .parameters = kParameters,
+                           .stress = {}};
+  TechniquePlugin plugin{};
+  plugin.info = &info;
+  std::vector<render::TechniqueUse> uses;
+  uses.push_back({&plugin, ParameterValues("budgeted", kParameters)});
+  uses[0].parameters.set("lights", "8");
+  EXPECT_NO_THROW(checkMeasurable(uses));
+  uses[0].parameters.set("frame_time", "40");
+  try {
+    checkMeasurable(uses);
+    ADD_FAILURE() << "nothing was refused";
+  } catch (const UsageError& error) {
+    EXPECT_THAT(error.what(), testing::StartsWith("budgeted.frame_time=40: "));
+    EXPECT_THAT(error.what(), testing::EndsWith("benches accept 0 alone"));
+  }
 }
 
 }  // namespace
