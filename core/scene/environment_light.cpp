@@ -56,7 +56,7 @@ bool isBlack(const Environment& environment) {
 
 EnvironmentLight::EnvironmentLight(const Environment& environment) : environment_(environment) {
   const int width = environment.width, height = environment.height;
-  if (width == 0 || height == 0 || environment.scale == 0) return;
+  if (width == 0 || height == 0) return;
   sines_.resize(static_cast<size_t>(height));
   for (int y = 0; y < height; ++y)
     sines_[static_cast<size_t>(y)] = static_cast<float>(std::sin(std::numbers::pi * (y + 0.5) / height));

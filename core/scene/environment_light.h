@@ -13,11 +13,15 @@ namespace limn::scene {
 /// black.
 LIMN_API bool isBlack(const Environment& environment);
 
+/// Samples an environment by tables of its pixels, which must not change. Its rotation and scale are those of
+/// the time of asking.
 class LIMN_API EnvironmentLight {
  public:
+  /// Takes the environment, which must outlive the light.
   explicit EnvironmentLight(const Environment& environment);
 
-  bool present() const { return total_ > 0; }
+  /// Returns whether any light comes from it.
+  bool present() const { return total_ > 0 && environment_.scale != 0; }
 
   /// Returns the radiance from a world direction (unit), W/(sr m^2): bilinear between pixel centres, wrapping
   /// around; 0 when there is no map.

@@ -6,6 +6,7 @@
 #include <algorithm>
 #include <cmath>
 #include <numbers>
+#include <span>
 
 #include "core/base/error.h"
 #include "core/base/kept_results.h"
@@ -30,7 +31,7 @@ constexpr float kLargestHalf = 65504;
 /// the result.
 enum class Rows { inside, onPoles };
 
-/// Map: a FilteredMap or an environment, here and below.
+/// Map: a FilteredMap or an EvenPicture, here and below.
 template <class Map>
 const vec3& texel(const Map& map, int x, int y) {
   return map.texels[static_cast<size_t>(y) * static_cast<size_t>(map.width) + static_cast<size_t>(x)];
@@ -63,12 +64,19 @@ FilteredMap makeMap(int width, Rows rows, const Function& function) {
   return map;
 }
 
+/// Points along a texel: where it holds whole pixels, or a pixel whole texels, one for each pixel, which
+/// counts for all that it holds. Elsewhere eight: the tents by which pixels are interpolated sum to that
+/// within 0.3 %.
+int pointsAlong(int pixels, int texels) {
+  const bool whole = pixels % texels == 0 || texels % pixels == 0;
+  return ((whole ? 1 : 8) * pixels + texels - 1) / texels;
+}
+
 /// Mean radiance over each texel, weighted by solid angle.
 template <class Map>
 FilteredMap resampled(const Map& source, int width, Rows rows) {
   const int height = std::max(width / 2, 1);
-  const int across = std::max(1, (source.width + width - 1) / width);
-  const int down = std::max(1, (source.height + height - 1) / height);
+  const int across = pointsAlong(source.width, width), down = pointsAlong(source.height, height);
   const float cell = 1.0f / static_cast<float>(width);
   return makeMap(width, rows, [&](vec2 centre) {
     dvec3 sum(0);
@@ -235,29 +243,60 @@ std::vector<Share> covered(int i, int coarse, int count, const Measure& measure)
   return shares;
 }
 
-FilteredMap halved(int width, int height, const std::vector<vec3>& texels) {
-  FilteredMap half{std::max(width / 2, 1), std::max(height / 2, 1), {}};
-  half.texels.resize(static_cast<size_t>(half.width) * static_cast<size_t>(half.height));
-  tbb::parallel_for(0, half.height, [&](int y) {
-    const auto rows = covered(y, half.height, height,
-                              [&](double place) { return -std::cos(std::numbers::pi * place / height); });
-    for (int x = 0; x < half.width; ++x) {
+/// The means over the parts of a picture of `size` texels that the texels of one of `to`, no larger, cover,
+/// by exact solid angles: it holds the same light.
+FilteredMap reduced(const glm::ivec2& size, std::span<const vec3> texels, const glm::ivec2& to) {
+  FilteredMap coarse{to.x, to.y, {}};
+  coarse.texels.resize(static_cast<size_t>(to.x) * static_cast<size_t>(to.y));
+  tbb::parallel_for(0, to.y, [&](int y) {
+    const auto rows =
+        covered(y, to.y, size.y, [&](double place) { return -std::cos(std::numbers::pi * place / size.y); });
+    for (int x = 0; x < to.x; ++x) {
       dvec3 sum(0);
       double weights = 0;
-      for (const Share& column : covered(x, half.width, width, [](double place) { return place; })) {
+      for (const Share& column : covered(x, to.x, size.x, [](double place) { return place; })) {
         for (const Share& row : rows) {
           const double weight = row.weight * column.weight;
-          sum += weight * dvec3(texels[static_cast<size_t>(row.index) * static_cast<size_t>(width) +
+          sum += weight * dvec3(texels[static_cast<size_t>(row.index) * static_cast<size_t>(size.x) +
                                        static_cast<size_t>(column.index)]);
           weights += weight;
         }
       }
-      half.texels[static_cast<size_t>(y) * static_cast<size_t>(half.width) + static_cast<size_t>(x)] =
+      coarse.texels[static_cast<size_t>(y) * static_cast<size_t>(to.x) + static_cast<size_t>(x)] =
           vec3(sum / weights);
     }
   });
-  return half;
+  return coarse;
 }
+
+/// The side of a picture that maps of `largest` texels are made of: a larger one whose pixels are no whole
+/// part of a texel is brought to `largest` by exact means first, in which no pixel counts for more than it
+/// holds.
+int evenSide(int pixels, int largest) {
+  return pixels > largest && pixels % largest != 0 ? largest : pixels;
+}
+
+/// The picture of an environment, with such sides.
+class EvenPicture {
+ public:
+  explicit EvenPicture(const scene::Environment& environment)
+      : width(evenSide(environment.width, glsl::environment_filtered_width)),
+        height(evenSide(environment.height, glsl::environment_filtered_width / 2)),
+        texels(environment.texels) {
+    const glm::ivec2 size(environment.width, environment.height), even(width, height);
+    if (even == size) return;
+    reduced_ = reduced(size, environment.texels, even);
+    texels = reduced_.texels;
+  }
+  EvenPicture(const EvenPicture&) = delete;
+  EvenPicture& operator=(const EvenPicture&) = delete;
+
+  int width, height;
+  std::span<const vec3> texels;
+
+ private:
+  FilteredMap reduced_;
+};
 
 }  // namespace
 
@@ -278,15 +317,16 @@ vec3 FilteredEnvironment::filtered(const vec3& direction, float alpha) const {
 
 FilteredEnvironment filterEnvironment(const scene::Environment& environment) {
   requireMap(environment);
-  std::vector<FilteredMap> chain{resampled(environment, glsl::environment_filtered_width, Rows::inside)};
+  const EvenPicture picture(environment);
+  std::vector<FilteredMap> chain{resampled(picture, glsl::environment_filtered_width, Rows::inside)};
   while (chain.back().width > 8) {
     chain.push_back(resampled(chain.back(), chain.back().width / 2, Rows::inside));
   }
 
   FilteredEnvironment result;
-  result.irradiance = convolvedOverHemisphere(resampled(environment, kIrradianceSourceWidth, Rows::inside),
+  result.irradiance = convolvedOverHemisphere(resampled(picture, kIrradianceSourceWidth, Rows::inside),
                                               [](float cosine) { return cosine; });
-  result.radiance.push_back(resampled(environment, glsl::environment_filtered_width, Rows::onPoles));
+  result.radiance.push_back(resampled(picture, glsl::environment_filtered_width, Rows::onPoles));
   for (int level = 1; level < glsl::environment_levels; ++level) {
     result.radiance.push_back(convolvedWithLobe(chain, level));
   }
@@ -295,7 +335,8 @@ FilteredEnvironment filterEnvironment(const scene::Environment& environment) {
 
 FilteredMap filterGrazing(const scene::Environment& environment) {
   requireMap(environment);
-  return convolvedOverHemisphere(resampled(environment, kIrradianceSourceWidth, Rows::inside),
+  const EvenPicture picture(environment);
+  return convolvedOverHemisphere(resampled(picture, kIrradianceSourceWidth, Rows::inside),
                                  [](float cosine) { return cosine * glsl::schlick_weight(cosine); });
 }
 
@@ -315,7 +356,7 @@ std::vector<FilteredMap> radianceLevels(const scene::Environment& environment) {
   int width = environment.width, height = environment.height;
   const std::vector<vec3>* texels = &environment.texels;
   while (width > 1 || height > 1) {
-    levels.push_back(halved(width, height, *texels));
+    levels.push_back(reduced({width, height}, *texels, {std::max(width / 2, 1), std::max(height / 2, 1)}));
     width = levels.back().width;
     height = levels.back().height;
     texels = &levels.back().texels;

@@ -1,5 +1,6 @@
 #include "core/shading_maps/shading_maps.h"
 
+#include "core/scene/environment_light.h"
 #include "core/shading/environment.h"
 #include "core/shading/ltc_table.h"
 #include "glsl/materials/material_model.glsl"
@@ -13,8 +14,17 @@ ShadingMapService::ShadingMapService(gpu::Device& device, const scene::Scene& sc
     : device_(device), scene_(scene) {}
 ShadingMapService::~ShadingMapService() = default;
 
+const scene::EnvironmentLight& ShadingMapService::environmentLight() {
+  if (!light_) light_ = std::make_unique<scene::EnvironmentLight>(scene_.environment);
+  return *light_;
+}
+
 void ShadingMapService::begin() {
-  for (Entry* entry : {&radiance_, &levels_, &ltc_, &irradiance_, &filtered_, &grazing_}) entry->handle = {};
+  for (Entry* entry : {&radiance_, &levels_, &ltc_, &irradiance_, &filtered_, &grazing_}) {
+    // What the last graph did without would count in the memory of other techniques.
+    if (!entry->handle) entry->texture = {};
+    entry->handle = {};
+  }
 }
 
 const scene::Environment& ShadingMapService::environment() const {

@@ -1,12 +1,19 @@
 // Declares the service that holds what shading looks up on the GPU, whoever asks: the environment's map, the
 // same with coarser levels and filtered for surfaces, and the table of linearly transformed cosines. Each is
-// made and uploaded when a pass that needs it is first declared, and kept.
+// made and uploaded when a pass that needs it is first declared, and kept; and so is what samples of the
+// environment are drawn by.
 #pragma once
+
+#include <memory>
 
 #include "core/frame/frame_graph.h"
 #include "core/gpu/objects.h"
 #include "core/scene/scene.h"
 #include "core/technique/frame_service.h"
+
+namespace limn::scene {
+class EnvironmentLight;
+}
 
 namespace limn::shading_maps {
 
@@ -19,6 +26,9 @@ class LIMN_API ShadingMapService : public FrameService {
   ShadingMapService(gpu::Device& device, const scene::Scene& scene);
   ~ShadingMapService() override;
 
+  /// Returns the scene's environment as a light that is sampled. Its tables are made once, for all rotations
+  /// and scales.
+  const scene::EnvironmentLight& environmentLight();
   /// Returns the equirectangular map of the scene's environment, RGB32F, W/(sr m^2), in the environment's own
   /// frame and without its scale: bilinear, repeated around the horizon. Empty without an environment.
   frame::TextureHandle radiance();
@@ -48,6 +58,7 @@ class LIMN_API ShadingMapService : public FrameService {
   gpu::Device& device_;
   const scene::Scene& scene_;
   Entry radiance_, levels_, ltc_, irradiance_, filtered_, grazing_;
+  std::unique_ptr<scene::EnvironmentLight> light_;  ///< null: not asked for
 };
 
 }  // namespace limn::shading_maps

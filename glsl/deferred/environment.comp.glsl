@@ -1,7 +1,8 @@
-// Adds the light of the environment on every surface to the radiance, unoccluded (V = 1). MEDIUM 1: times the medium's
-// transmittance along the normal.
+// Adds the light of the environment on every surface to the radiance, unoccluded (V = 1). MEDIUM 1: the medium takes its part.
 #include "glsl/light/reflected_environment.glsl"
-#include "glsl/media/medium_input.glsl"
+#if MEDIUM
+#include "glsl/media/environment_transmittance.glsl"
+#endif
 
 layout(local_size_x = 8, local_size_y = 8) in;
 layout(rgba32f) uniform image2D radiance;
@@ -15,10 +16,9 @@ void main() {
   if ((surface.flags & gbuffer_flag_specular) != 0u) return;
   vec3 v = -normalize(pixel_ray(pixel));
   SurfaceMaterial material = pixel_material(pixel, surface);
-  vec3 light = reflected_whole(reflected_environment(material, surface.normal, surface.geometric_normal, v));
+  ReflectedParts light = reflected_environment(material, surface.normal, surface.geometric_normal, v);
 #if MEDIUM
-  Medium medium = scene_medium();
-  light *= medium_transmittance(medium, medium_length(medium, pixel_position(pixel, depth), surface.normal, 3.0e38));
+  light = environment_through_medium(light, has_coat(material), pixel_position(pixel, depth), surface.normal, v);
 #endif
-  imageStore(radiance, pixel, imageLoad(radiance, pixel) + vec4(light, 0.0));
+  imageStore(radiance, pixel, imageLoad(radiance, pixel) + vec4(reflected_whole(light), 0.0));
 }

@@ -43,10 +43,6 @@ ReflectedParts reflected_sample(SampledPixel p, EnvironmentSample light) {
 #endif
 }
 
-#if (MATERIAL_MODELS & 32) != 0
-bool is_coated(SampledPixel p) { return p.material.model.kind == model_coated; }
-#else
-bool is_coated(SampledPixel p) { return false; }
-#endif
+bool is_coated(SampledPixel p) { return has_coat(p.material); }
 
 #endif  // LIMN_SAMPLED_PIXEL_GLSL

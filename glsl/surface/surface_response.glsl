@@ -36,6 +36,15 @@ bool has_model(SurfaceMaterial m) {
 #endif
 }
 
+// Whether it is a base under a coat that mirrors.
+bool has_coat(SurfaceMaterial m) {
+#if (MATERIAL_MODELS & 32) != 0
+  return m.model.kind == model_coated;
+#else
+  return false;
+#endif
+}
+
 // surface: that of the pixel.
 SurfaceMaterial pixel_material(ivec2 pixel, GBufferSurface surface) {
   SurfaceMaterial m;

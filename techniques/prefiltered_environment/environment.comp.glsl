@@ -1,5 +1,5 @@
-// Adds the light of the environment that surfaces reflect, unoccluded (V = 1): lookups in the prefiltered maps. MEDIUM 1: times
-// the medium's transmittance along the normal. GGX_LOBES 0: metallic-roughness surfaces are Lambertian.
+// Adds the light of the environment that surfaces reflect, unoccluded (V = 1): lookups in the prefiltered maps. MEDIUM 1: the
+// medium takes its part. GGX_LOBES 0: metallic-roughness surfaces are Lambertian.
 #include "glsl/surface/surface_response.glsl"
 #include "glsl/light/prefiltered.glsl"
 #if MATERIAL_MODELS
@@ -8,7 +8,9 @@
 #if (MATERIAL_MODELS & 160) != 0
 #include "glsl/light/coated_environment.glsl"
 #endif
-#include "glsl/media/medium_input.glsl"
+#if MEDIUM
+#include "glsl/media/environment_transmittance.glsl"
+#endif
 
 layout(local_size_x = 8, local_size_y = 8) in;
 layout(rgba32f) uniform image2D radiance;
@@ -35,18 +37,18 @@ vec3 filtered_radiance(vec3 towards, float alpha) {
 }
 #endif
 
-// Radiance that a metallic-roughness surface reflects towards v. n, ng: shading and geometric normal, here and below.
-vec3 brdf_reflection(SurfaceBrdf s, vec3 n, vec3 ng, vec3 v) {
+// Light that a metallic-roughness surface reflects towards v. n, ng: shading and geometric normal, here and below.
+ReflectedParts brdf_reflection(SurfaceBrdf s, vec3 n, vec3 ng, vec3 v) {
   vec3 irradiance = irradiance_towards(n);
 #if GGX_LOBES
-  if (brdf_is_lambertian(s)) return s.diffuse * irradiance * inverse_pi;
-  LtcTerms terms = ltc_lookup(dot(n, v), s.alpha);
-  vec3 towards = prefiltered_direction(LOOKUP, terms, n, v, s.alpha);
-  vec3 filtered = environment_lobe_share(terms, n, ng, v, s.alpha) * filtered_radiance(towards, s.alpha);
-  return reflected_whole(environment_reflection(s, terms, irradiance, filtered));
-#else
-  return s.diffuse * irradiance * inverse_pi;
+  if (!brdf_is_lambertian(s)) {
+    LtcTerms terms = ltc_lookup(dot(n, v), s.alpha);
+    vec3 towards = prefiltered_direction(LOOKUP, terms, n, v, s.alpha);
+    vec3 filtered = environment_lobe_share(terms, n, ng, v, s.alpha) * filtered_radiance(towards, s.alpha);
+    return environment_reflection(s, terms, irradiance, filtered);
+  }
 #endif
+  return ReflectedParts(s.diffuse * irradiance * inverse_pi, vec3(0.0));
 }
 
 #if (MATERIAL_MODELS & 22) != 0
@@ -84,41 +86,41 @@ vec3 grazing_light(vec3 n) {
 #endif
 
 #if MATERIAL_MODELS
-// Radiance that a surface with a model reflects towards v; of the kinds without an answer below it is that of the
+// Light that a surface with a model reflects towards v; of the kinds without an answer below it is that of the
 // metallic-roughness surface next to it.
-vec3 model_reflection(SurfaceMaterial s, vec3 n, vec3 ng, vec3 v) {
+ReflectedParts model_reflection(SurfaceMaterial s, vec3 n, vec3 ng, vec3 v) {
   MaterialModel m = s.model;
 #if (MATERIAL_MODELS & 6) != 0
   if (m.kind == model_torrance_sparrow || m.kind == model_ward) {
     MicrofacetLobe entry = microfacet_lobe_entry(dot(n, v), microfacet_lobe_alpha(m));
-    return m.kd * irradiance_towards(n) * inverse_pi +
-           lobe_radiance(microfacet_prefiltered_lobe(m, entry, LOOKUP, n, v), n, ng);
+    return ReflectedParts(m.kd * irradiance_towards(n) * inverse_pi,
+                          lobe_radiance(microfacet_prefiltered_lobe(m, entry, LOOKUP, n, v), n, ng));
   }
 #endif
 #if (MATERIAL_MODELS & 8) != 0
-  if (m.kind == model_banks) return banks_albedo(m) * irradiance_towards(n) * inverse_pi;
+  if (m.kind == model_banks) return ReflectedParts(banks_albedo(m) * irradiance_towards(n) * inverse_pi, vec3(0.0));
 #endif
 #if (MATERIAL_MODELS & 16) != 0
   if (m.kind == model_phong)
-    return m.kd * irradiance_towards(n) * inverse_pi + lobe_radiance(phong_prefiltered_lobe(m, LOOKUP, n, v), n, ng);
+    return ReflectedParts(m.kd * irradiance_towards(n) * inverse_pi, lobe_radiance(phong_prefiltered_lobe(m, LOOKUP, n, v), n, ng));
 #endif
 #if (MATERIAL_MODELS & 32) != 0
   if (m.kind == model_coated) {
     vec3 mirror = environment_lookup_direction(mirror_direction(n, v), frame.environment_rotation);
     vec3 mirrored = frame.environment_scale * prefiltered_lookup(sharp_map, mirror, 0);
-    return reflected_whole(coated_environment(m, n, ng, v, irradiance_towards(n), grazing_light(n), mirrored));
+    return coated_environment(m, n, ng, v, irradiance_towards(n), grazing_light(n), mirrored);
   }
 #endif
 #if (MATERIAL_MODELS & 128) != 0
-  return inverse_pi * entering_irradiance(m, vec3(1.0) - m.kd, irradiance_towards(n), grazing_light(n));
+  vec3 entering = entering_irradiance(m, vec3(1.0) - m.kd, irradiance_towards(n), grazing_light(n));
+  return ReflectedParts(inverse_pi * entering, vec3(0.0));
 #endif
   return brdf_reflection(nearest_brdf(s), n, ng, v);
 }
 #endif
 
 // The answer of the surface's model.
-vec3 reflected_environment(ivec2 pixel, GBufferSurface surface, vec3 v) {
-  SurfaceMaterial material = pixel_material(pixel, surface);
+ReflectedParts reflected_environment(SurfaceMaterial material, GBufferSurface surface, vec3 v) {
 #if MATERIAL_MODELS
   if (has_model(material)) return model_reflection(material, surface.normal, surface.geometric_normal, v);
 #endif
@@ -132,10 +134,11 @@ void main() {
   if (depth == 0.0) return;
   GBufferSurface surface = pixel_surface(pixel);
   if ((surface.flags & gbuffer_flag_specular) != 0u) return;
-  vec3 light = reflected_environment(pixel, surface, -normalize(pixel_ray(pixel)));
+  vec3 v = -normalize(pixel_ray(pixel));
+  SurfaceMaterial material = pixel_material(pixel, surface);
+  ReflectedParts light = reflected_environment(material, surface, v);
 #if MEDIUM
-  Medium medium = scene_medium();
-  light *= medium_transmittance(medium, medium_length(medium, pixel_position(pixel, depth), surface.normal, 3.0e38));
+  light = environment_through_medium(light, has_coat(material), pixel_position(pixel, depth), surface.normal, v);
 #endif
-  imageStore(radiance, pixel, imageLoad(radiance, pixel) + vec4(light, 0.0));
+  imageStore(radiance, pixel, imageLoad(radiance, pixel) + vec4(reflected_whole(light), 0.0));
 }

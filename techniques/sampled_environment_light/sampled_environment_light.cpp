@@ -2,6 +2,7 @@
 // area lights is compared with on the GPU.
 #include "core/gpu_scene/gpu_scene.h"
 #include "core/scene/environment_light.h"
+#include "core/shading_maps/shading_maps.h"
 #include "core/shadow/environment_samples.h"
 #include "core/technique/technique.h"
 
@@ -30,7 +31,8 @@ class SampledEnvironmentLight : public Technique {
 
   frame::TextureHandle addPasses(frame::FrameGraph& graph, const TechniqueInputs& inputs,
                                  const TermRequest& request) override {
-    const scene::EnvironmentLight environment(inputs.scene.environment);
+    const scene::EnvironmentLight& environment =
+        inputs.service<shading_maps::ShadingMapService>().environmentLight();
     if (!environment.present()) {
       graph.leaveOut("environment", info.name, "the environment is black");
       return request.target;

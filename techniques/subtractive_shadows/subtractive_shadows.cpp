@@ -80,7 +80,8 @@ constexpr Parameter kParameters[] = {
         .logScale(),
     real("frame_time", 0, {0, 1e4}, "ms",
          "Time that a frame may take: lights become fewer, and blocks larger where that is not enough, until "
-         "it does; 0: always all lights, as of regions"),
+         "it does; 0: always all lights, as of regions; benches accept nothing else")
+        .byClock(),
     choice("show", 0, kShows,
            "The light, or in its place that without shadows, what each block of pixels knows to be hidden of "
            "it, or what is taken from it after pixels have looked at the blocks around them"),
@@ -118,7 +119,8 @@ class SubtractiveShadows : public Technique {
 
   TextureHandle addPasses(frame::FrameGraph& graph, const TechniqueInputs& inputs,
                           const TermRequest& request) override {
-    const scene::EnvironmentLight environment(inputs.scene.environment);
+    const scene::EnvironmentLight& environment =
+        inputs.service<shading_maps::ShadingMapService>().environmentLight();
     if (!environment.present()) {
       graph.leaveOut("environment", info.name, "the environment is black");
       return request.target;
@@ -235,7 +237,7 @@ class SubtractiveShadows : public Technique {
           combine_(static_cast<Combine>(inputs.parameters.choice("combine"))),
           coats_((inputs.handles.modelKinds & 1u << glsl::model_coated) != 0),
           parts_(coats_ || combine_ == ratioSplit || (demodulated() && !byRatio())),
-          blocks_(graph, inputs.handles, inputs.gbuffer, inputs.size,
+          blocks_(graph, inputs.gpuScene.device(), inputs.handles, inputs.gbuffer, inputs.size,
                   {.side = block,
                    .positionWidth = inputs.parameters.real("position_width"),
                    .normalWidth = inputs.parameters.real("normal_width")},

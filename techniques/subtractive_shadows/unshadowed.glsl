@@ -23,6 +23,9 @@ vec3 mirrored_light(SampledPixel p) { return vec3(0.0); }
 ReflectedParts unshadowed_light(ivec2 pixel, SampledPixel p) { return ReflectedParts(vec3(0.0), mirrored_light(p)); }
 
 #elif UNSHADOWED != UNSHADOWED_LIGHTS
+#if MEDIUM
+#include "glsl/media/environment_transmittance.glsl"
+#endif
 #if UNSHADOWED == UNSHADOWED_BRDF_SAMPLES
 #include "techniques/subtractive_shadows/brdf_samples.glsl"
 #elif UNSHADOWED == UNSHADOWED_CACHE
@@ -41,9 +44,7 @@ ReflectedParts unshadowed_light(ivec2 pixel, SampledPixel p) {
       reflected_environment(p.material, p.surface.normal, p.surface.geometric_normal, p.to_viewer);
 #endif
 #if MEDIUM
-  Medium medium = scene_medium();
-  light = scaled_parts(
-      light, medium_transmittance(medium, medium_length(medium, p.position, p.surface.normal, 3.0e38)));
+  light = environment_through_medium(light, is_coated(p), p.position, p.surface.normal, p.to_viewer);
 #endif
   return light;
 }

@@ -99,6 +99,25 @@ TEST(Environment, NarrowPicturesGiveTheLightOfWideOnes) {
   }
 }
 
+/// A sun of one pixel, in each channel another one, in pictures whose pixels are no whole part of a texel.
+/// Texels that are summed and looked up are at most 3 and 4 degrees from it: cosines take 0.4 % of it.
+TEST(Environment, ASunOfOnePixelKeepsItsLightInPicturesOfAnySize) {
+  constexpr glm::ivec2 kSuns[] = {{101, 76}, {103, 78}, {200, 30}};
+  for (const glm::ivec2 size : {glm::ivec2(300, 150), glm::ivec2(333, 140), glm::ivec2(700, 350)}) {
+    scene::Environment e;
+    e.width = size.x;
+    e.height = size.y;
+    e.texels.assign(static_cast<size_t>(size.x) * static_cast<size_t>(size.y), vec3(0));
+    for (int c = 0; c < 3; ++c) e.texels[static_cast<size_t>(kSuns[c].y * size.x + kSuns[c].x)][c] = 100;
+    const FilteredEnvironment f = filterEnvironment(e);
+    for (int c = 0; c < 3; ++c) {
+      const vec3 towards = glsl::equirectangular_direction((vec2(kSuns[c]) + 0.5f) / vec2(size));
+      const float facing = 100 * glsl::equirectangular_pixel_solid_angle(kSuns[c].y, size.x, size.y);
+      EXPECT_NEAR(f.irradiance.sample(towards)[c] / facing, 1, 0.01) << size.x << ", channel " << c;
+    }
+  }
+}
+
 // L = 1 + d.a: the cosine convolution keeps the linear part by 2/3.
 TEST(Environment, IrradianceOfALinearSkyIsTheClosedForm) {
   const vec3 a = normalize(vec3(0.3f, 0.8f, -0.5f));
