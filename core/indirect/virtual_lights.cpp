@@ -8,7 +8,6 @@
 #include "core/gpu_scene/gpu_medium.h"
 #include "core/gpu_scene/light_textures.h"
 #include "core/scene/scene.h"
-#include "glsl/numeric/sampling.glsl"
 
 namespace limn::indirect {
 namespace {
@@ -154,9 +153,8 @@ VirtualLights VirtualLightService::request(std::span<const uint32_t> lights, con
   for (const Known& known : known_) {
     if (known.desc == desc && std::ranges::equal(known.lights, lights)) return known.made;
   }
-  shadow::ShadowMapDesc mapDesc{.size = desc.mapSize, .reflective = true};
-  for (int i = 0; desc.lightSamples > 1 && i < desc.lightSamples; ++i)
-    mapDesc.samples.push_back(glsl::r2_sequence(static_cast<uint32_t>(i) + 1));
+  const shadow::ShadowMapDesc mapDesc{
+      .size = desc.mapSize, .samples = shadow::pointsOnLights(desc.lightSamples), .reflective = true};
   VirtualLights made;
   made.maps = context().services.get<shadow::ShadowMapService>().request(lights, mapDesc);
   made.count = desc.count;

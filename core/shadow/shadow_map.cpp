@@ -10,6 +10,7 @@
 #include "core/shadow/light_fit.h"
 #include "core/shadow/private/map_memory.h"
 #include "core/shadow/private/map_raster.h"
+#include "glsl/numeric/sampling.glsl"
 
 namespace limn::shadow {
 namespace {
@@ -87,6 +88,13 @@ struct KnownFourierMaps {
 };
 
 }  // namespace
+
+std::vector<glm::vec2> pointsOnLights(int count) {
+  std::vector<glm::vec2> points;
+  for (int i = 0; count > 1 && i < count; ++i)
+    points.push_back(glsl::r2_point(static_cast<uint32_t>(i), static_cast<uint32_t>(count)));
+  return points;
+}
 
 struct ShadowMapService::Implementation {
   Implementation(gpu::Device& onDevice, scene::GpuScene& ofScene)

@@ -68,6 +68,10 @@ struct ShadowMapDesc {
   bool operator==(const ShadowMapDesc&) const = default;
 };
 
+/// Returns `count` points for ShadowMapDesc::samples, of the R2 sequence, which lie alike on all sides of a
+/// light's centre (glsl::r2_point). None for one point: maps are then of the centre.
+LIMN_API std::vector<glm::vec2> pointsOnLights(int count);
+
 /// Holds the maps of a request. `lights` holds one glsl::ShadowLight per light and sample, or part,
 /// light-major: the place of its layers. Lights with fewer than others repeat their last one.
 struct ShadowMaps {

@@ -20,6 +20,17 @@ LIMN_CONST uint r3_step_z = 2360945575u;
 LIMN_FN uint fixed_point(float x) { return uint(x * 16777216.0f) << 8u; }
 LIMN_FN float fixed_point_value(uint x) { return float(int(x >> 8u)) * 5.9604644775390625e-8f; }
 
+// Point i of a set of `count` that follow each other in the R2 sequence, moved so that the set lies alike on all sides of the
+// square's middle, which a single point is. The mean of the first points of the sequence lies aside of it, of 16 by 0.1: what they
+// stand for, as a light, would seem to lie there.
+LIMN_FN vec2 r2_point(uint i, uint count) {
+  // Half of the square less (count - 1) / 2 steps.
+  uvec2 first = uvec2(0x80000000u) - (count >> 1u) * r2_step;
+  if ((count & 1u) == 0u) first += r2_step >> 1u;
+  uvec2 at = first + i * r2_step;
+  return vec2(fixed_point_value(at.x), fixed_point_value(at.y));
+}
+
 // Centres of the cells of a regular grid of side x side.
 LIMN_FN vec2 grid_point(int i, int side) {
   return vec2((float(i % side) + 0.5f) / float(side), (float(i / side) + 0.5f) / float(side));

@@ -8,7 +8,6 @@
 #include "core/shadow/shadow_map.h"
 #include "core/shadow/visibility_pass.h"
 #include "core/technique/technique.h"
-#include "glsl/numeric/sampling.glsl"
 
 namespace {
 
@@ -76,9 +75,8 @@ class Airlight : public Technique {
     }
     const ParameterValues& p = inputs.parameters;
     const int samples = p.integer("light_samples");
-    shadow::ShadowMapDesc desc{.size = p.integer("shadow_map_size")};
-    for (int i = 0; samples > 1 && i < samples; ++i)
-      desc.samples.push_back(glsl::r2_sequence(static_cast<uint32_t>(i) + 1));
+    const shadow::ShadowMapDesc desc{.size = p.integer("shadow_map_size"),
+                                     .samples = shadow::pointsOnLights(samples)};
     const shadow::ShadowMaps maps = inputs.service<shadow::ShadowMapService>().request(lights, desc);
     frame::TextureHandle target = request.target;
     // Of the loops in medium_length(): its points, and the axes of the grid's box.

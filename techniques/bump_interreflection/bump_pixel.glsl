@@ -71,8 +71,11 @@ vec3 arriving_light(Light light, vec3 position, ivec2 pixel, int layer) {
   return sent;
 }
 
-// Where in the map the light of a pixel is looked up for the i-th time, in texels. size: of the pixel in the map, in texels.
-vec2 footprint_place(vec2 place, float size, int i) { return place + size * (r2_sequence(uint(i) + 1u) - 0.5); }
+// Where in the map the light of a pixel is looked up for the i-th of `count` times, in texels. size: of the pixel in the map, in
+// texels.
+vec2 footprint_place(vec2 place, float size, int i, int count) {
+  return place + size * (r2_point(uint(i), uint(count)) - 0.5);
+}
 
 uint nearest_texel(ivec2 size, bool clamped, vec2 place) {
   vec2 texel = floor(place + 0.5);

@@ -39,7 +39,7 @@ void main() {
   float sum = 0.0;
   int i = 0;
   do {
-    sum += gathered_at(base, field, footprint_place(place, wider, i));
+    sum += gathered_at(base, field, footprint_place(place, wider, i, places));
   } while (++i < places);
   float share = sum / float(places);
 #else

@@ -61,7 +61,7 @@ void main() {
   float weights = 0.0;
   int i = 0;
   do {
-    uint texel = nearest_texel(field.size, clamped, footprint_place(place, footprint, i));
+    uint texel = nearest_texel(field.size, clamped, footprint_place(place, footprint, i, paths));
     BouncePath path = bounce_path(texels, texel, i);
     weights += path.weight;
     vec3 weight = vec3(path.weight);

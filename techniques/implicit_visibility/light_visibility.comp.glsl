@@ -46,7 +46,7 @@ void main() {
     uint count = v.extended ? samples : 1u;
     for (uint s = 0u; s < count; ++s) {
       vec3 slope = v.centre;
-      if (v.extended && !light_view_sample(v, r2_sequence(s), slope)) continue;
+      if (v.extended && !light_view_sample(v, r2_point(s, count), slope)) continue;
       total += 1.0;
       if (clear(slot, light, v, slope)) hits += 1.0;
     }

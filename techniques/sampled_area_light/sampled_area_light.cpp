@@ -1,12 +1,14 @@
 // Area lights as many point samples, each with a shadow map of its own (Brotman and Badler 1984; Haeberli and
 // Akeley 1990): converges to the truth, and is what the soft-shadow techniques are compared with on the GPU.
 #include <algorithm>
+#include <cstdint>
 
 #include "core/gpu_scene/gpu_medium.h"
 #include "core/gpu_scene/light_textures.h"
 #include "core/shadow/sample_batches.h"
 #include "core/shadow/visibility_pass.h"
 #include "core/technique/technique.h"
+#include "glsl/numeric/sampling.glsl"
 
 namespace {
 
@@ -41,7 +43,9 @@ class SampledAreaLight : public Technique {
   /// Maps of samples first .. first + count - 1.
   static shadow::ShadowMapDesc mapsOf(const ParameterValues& values, int first, int count) {
     shadow::ShadowMapDesc desc = shadow::shadowMapDesc(values);
-    for (int i = first; i < first + count; ++i) desc.samples.push_back(shadow::samplePlace(i));
+    const auto total = static_cast<uint32_t>(values.integer("samples"));
+    for (int i = first; i < first + count; ++i)
+      desc.samples.push_back(glsl::r2_point(static_cast<uint32_t>(i), total));
     return desc;
   }
 

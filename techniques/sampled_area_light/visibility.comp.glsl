@@ -28,8 +28,7 @@ int samples_above(VisibilityQuery q) {
   if (q.masked || q.light.whole || !q.light.extended) return total_samples;
   int above = 0;
   for (int i = 0; i < total_samples; ++i) {
-    vec2 u = fract(r2_sequence(uint(i)) + 0.5);
-    vec3 offset = light_view_point(q.light, u);
+    vec3 offset = light_view_point(q.light, r2_point(uint(i), uint(total_samples)));
     if (dot(offset, q.normal) > 0.0) ++above;
   }
   return above;

@@ -322,6 +322,23 @@ TEST(SampleSequence, StepsOfFixedPointAreTheSequence) {
   }
 }
 
+/// A set of points is a piece of the sequence, moved. Each has its counterpart on the other side of the
+/// middle, so that the mean is the middle, which that of the sequence's first 16 points misses by 0.1.
+TEST(SampleSequence, PointsOfASetLieAlikeOnAllSidesOfTheMiddle) {
+  EXPECT_EQ(r2_point(0, 1), vec2(0.5f));
+  for (const uint32_t count : {2u, 3u, 4u, 15u, 16u, 64u, 4096u}) {
+    for (uint32_t i = 0; i < count; ++i) {
+      // Of 2^-24 each of both points is rounded down.
+      const vec2 both = r2_point(i, count) + r2_point(count - 1 - i, count);
+      EXPECT_NEAR(both.x, 1, 2.5e-7f) << i << " of " << count;
+      EXPECT_NEAR(both.y, 1, 2.5e-7f) << i << " of " << count;
+      const vec2 off = abs(fract(r2_point(i, count) - r2_point(0, count)) - r2_sequence(i));
+      EXPECT_LT(min(off.x, 1 - off.x), 2.5e-7f) << i << " of " << count;
+      EXPECT_LT(min(off.y, 1 - off.y), 2.5e-7f) << i << " of " << count;
+    }
+  }
+}
+
 std::string kindName(const ::testing::TestParamInfo<uint32_t>& kind) {
   constexpr const char* names[] = {"Point", "Disc", "DistantRectangle", "Rectangle"};
   return names[kind.param];
