@@ -27,6 +27,11 @@ using frame::TextureHandle;
 
 constexpr int kGroupSide = 8;
 
+template <class T>
+bool sameBytes(const std::vector<T>& a, const std::vector<T>& b) {
+  return a.size() == b.size() && (a.empty() || std::memcmp(a.data(), b.data(), a.size() * sizeof(T)) == 0);
+}
+
 /// The light as its map of the specular objects sees it: finite lights look at the middle of the objects.
 glsl::Light aimed(const glsl::Light& light, const glm::vec3& origin, const scene::Bounds& objects) {
   if (light.type == glsl::light_directional) return light;
@@ -69,11 +74,21 @@ struct CausticRayService::Implementation {
   std::vector<scene::Bounds> boxes = {};  ///< of the specular instances
   std::vector<std::unique_ptr<Request>> requests = {};
 
-  void take(const scene::Pose& pose) {
-    lights = pose.lights;
-    boxes.clear();
-    for (uint32_t i = 0; i < scene.instanceCount(); ++i)
-      if (scene.specular(i) && !scene.bounds(i).empty()) boxes.push_back(scene.bounds(i));
+  /// Lights and boxes of `pose`, all that views depend on. True if they changed.
+  bool take(const scene::Pose& pose) {
+    bool changed = !sameBytes(lights, pose.lights);
+    if (changed) lights = pose.lights;
+    size_t count = 0;
+    for (uint32_t i = 0; i < scene.instanceCount(); ++i) {
+      const scene::Bounds& box = scene.bounds(i);
+      if (!scene.specular(i) || box.empty()) continue;
+      if (count == boxes.size()) boxes.emplace_back();
+      changed = changed || boxes[count] != box;
+      boxes[count++] = box;
+    }
+    changed = changed || boxes.size() != count;
+    boxes.resize(count);
+    return changed;
   }
   /// Whether a light may reach a specular object.
   bool reaches(uint32_t light) const { return mayReach(lights.at(light), boxes); }
@@ -155,14 +170,10 @@ frame::BufferHandle CausticRayService::Implementation::trace(const Request& requ
       pass.write(graph.createBuffer("caustic rays",
                                     {static_cast<size_t>(request.made.count()) * sizeof(glsl::CausticRay)}),
                  Access::storageStore, "Rays", "light behind specular objects");
-  // Whether one point has several does not change while the number of views stays.
-  const bool severalViews = std::ranges::any_of(request.layers, [](const glsl::CausticLayer& layer) {
-    return layer.faces != glsl::shadow_faces_single;
-  });
   gpu::ProgramDesc source{.files = {"glsl/caustics/trace_rays.comp.glsl"},
                           .defines = {{"PATHS", std::to_string(request.desc.paths)},
                                       {"PATH_COUNT", std::to_string(request.made.paths)},
-                                      {"OBJECT_FACES", severalViews ? "1" : "0"},
+                                      {"OBJECT_FACES", request.made.pointLayers > 1 ? "1" : "0"},
                                       {"EXIT_STEPS", std::to_string(request.desc.exitSteps)}}};
   const scene::MediumInput medium(handles, request.desc.mediumSteps);
   medium.define(source.defines);
@@ -187,14 +198,24 @@ CausticRays CausticRayService::Implementation::add(std::unique_ptr<Request> made
   request.made.layers = static_cast<int>(request.views.size());
   request.made.size = request.desc.size;
   request.made.paths = std::popcount(request.desc.paths);
+  // Whether one point has several views does not change while the number of views stays.
+  const bool several = std::ranges::any_of(request.layers, [](const glsl::CausticLayer& layer) {
+    return layer.faces != glsl::shadow_faces_single;
+  });
+  request.made.pointLayers = several ? static_cast<int>(glsl::shadow_face_count(glsl::shadow_faces_cube)) : 1;
   requests.push_back(std::move(made));
   if (request.views.empty()) return request.made;
+  if (request.made.layers > device.limits().maxArrayLayers)
+    throw UsageError(
+        fmt::format("caustic rays in {} layers: the device has at most {} in one array; ask for fewer "
+                    "light_samples or fewer lights",
+                    request.made.layers, device.limits().maxArrayLayers));
   const int64_t bytes = int64_t{request.made.layers} * request.desc.size * request.desc.size *
                         request.made.paths * static_cast<int64_t>(sizeof(glsl::CausticRay));
   // Passes bind the rays as one block, and list them in one dispatch.
   const int64_t most = std::min(device.limits().maxStorageBlockBytes,
                                 kMostListedRays * static_cast<int64_t>(sizeof(glsl::CausticRay)));
-  if (bytes > most || request.made.layers > device.limits().maxArrayLayers)
+  if (bytes > most)
     throw UsageError(fmt::format(
         "caustic rays of {} layers of {} x {} texels and {} paths take {} MiB, more than the {} MiB of a "
         "storage buffer; ask for a smaller buffer_size, fewer light_samples or fewer lights",
@@ -246,15 +267,15 @@ CausticRays CausticRayService::request(std::span<const uint32_t> lights, const C
                                "caustics", "it reaches no specular surface");
   }
   made->desc = desc;
-  for (int i = 0; desc.lightSamples > 1 && i < desc.lightSamples; ++i)
-    made->samples.push_back(glsl::r2_sequence(static_cast<uint32_t>(i) + 1));
+  made->samples = shadow::pointsOnLights(desc.lightSamples);
   return s.add(std::move(made), context());
 }
 
 bool CausticRayService::update(frame::FrameGraph& graph, const scene::Pose& pose) {
   Implementation& s = *implementation_;
+  if (s.requests.empty()) return false;
   const bool some = !s.boxes.empty(), lightsCameOrWent = pose.lights.size() != s.lights.size();
-  s.take(pose);
+  if (!s.take(pose)) return false;
   if (lightsCameOrWent || some == s.boxes.empty()) return true;
   for (const auto& request : s.requests) {
     if (s.lacksLights(*request)) return true;
@@ -265,9 +286,7 @@ bool CausticRayService::update(frame::FrameGraph& graph, const scene::Pose& pose
     layers.swap(lastLayers);
     s.fit(*request);
     if (views.size() != last.size()) return true;
-    const bool same = std::memcmp(views.data(), last.data(), views.size() * sizeof(views[0])) == 0 &&
-                      std::memcmp(layers.data(), lastLayers.data(), layers.size() * sizeof(layers[0])) == 0;
-    if (same) continue;
+    if (sameBytes(views, last) && sameBytes(layers, lastLayers)) continue;
     s.upload(*request);
     graph.touch(request->importedViews);
     graph.touch(request->made.layerLights);

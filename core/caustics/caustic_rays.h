@@ -44,6 +44,7 @@ struct CausticRays {
   /// Holds a storage buffer of glsl::CausticLayer, one per layer; `light` indexes scene.lights.
   frame::BufferHandle layerLights;
   int layers = 0, size = 0, paths = 0;
+  int pointLayers = 1;  ///< most layers of one point on a light: 1, or 6 where some point has several
   int count() const { return layers * size * size * paths; }
 };
 

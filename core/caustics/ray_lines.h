@@ -64,7 +64,7 @@ LIMN_API void setSampleShift(gpu::Program& program, const scene::GpuScene& scene
 
 struct LineDraw {
   std::string_view technique;
-  std::string fragmentShader;  ///< includes glsl/caustics/line_fragment.glsl
+  std::string fragmentShader;  ///< includes glsl/caustics/line_fragment.glsl and defines scattered_at()
   std::map<std::string, std::string> defines = {};
   int mediumSteps = 1;   ///< as in scene::MediumInput
   bool beams = true;     ///< lines whose beam is wider than a pixel become quads of that width

@@ -152,12 +152,16 @@ DensityGrid smokeAt(const Smoke& smoke, double time) {
 }
 
 Smoke smokeIn(const Bounds& bounds) {
-  const glm::vec3 extent = bounds.high - bounds.low;
-  const float size = bounds.radius();
+  // Where there is nothing yet a box of 1 m, since one without a size has no voxels.
+  const bool some = bounds.radius() > 0;
+  const glm::vec3 low = some ? bounds.low : bounds.centre() - 0.5f;
+  const glm::vec3 high = some ? bounds.high : bounds.centre() + 0.5f;
+  const glm::vec3 extent = high - low;
+  const float size = 0.5f * glm::length(extent);
   Smoke smoke;
   // A flat scene has room for smoke, too.
-  smoke.low = bounds.low - 0.01f * size;
-  smoke.high = glm::max(bounds.high, bounds.low + 0.25f * size);
+  smoke.low = low - 0.01f * size;
+  smoke.high = glm::max(high, low + 0.25f * size);
   smoke.whirl = 0.25f * std::max({extent.x, extent.y, extent.z});
   smoke.rise = 0.1f * size;
   return smoke;

@@ -25,8 +25,8 @@ LIMN_API glm::ivec3 smokeVoxels(const Smoke& smoke);
 LIMN_API glsl::SmokeBlock smokeBlock(const Smoke& smoke, double time);
 /// Returns the density grid of the smoke at `time` seconds.
 LIMN_API DensityGrid smokeAt(const Smoke& smoke, double time);
-/// Returns smoke that fills the lower part of a scene with these bounds, with whirls of a quarter of the
-/// scene's size.
+/// Returns smoke that fills the lower part of a scene with these bounds, 1 m where they have no size, with
+/// whirls of a quarter of the scene's size.
 LIMN_API Smoke smokeIn(const Bounds& bounds);
 
 /// Returns the transform from world space to the unit cube of the medium's grid or smoke; the identity when

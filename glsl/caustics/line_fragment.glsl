@@ -1,5 +1,5 @@
-// What fragment shaders of caustic lines share: where on its ray a fragment lies, how much of it is seen, and its weight. KIND
-// and BEAMS: see lines.vert.glsl.
+// What fragment shaders of caustic lines share: where on its ray a fragment lies, how much of it is seen, its weight, and the main
+// function, which asks the technique's scattered_at(). KIND and BEAMS: see lines.vert.glsl.
 #ifndef LIMN_LINE_FRAGMENT_GLSL
 #define LIMN_LINE_FRAGMENT_GLSL
 #include "glsl/caustics/caustic_line.glsl"
@@ -87,6 +87,21 @@ float line_weight(LineFragment f) {
 #endif
   return weight;
 #endif
+}
+
+// W/(sr m^2) that the medium scatters of the ray's light at a fragment towards the camera: each technique has its own.
+vec3 scattered_at(Medium medium, CausticRay ray, LineFragment f);
+
+void main() {
+  CausticRay ray = rays[ray_index];
+  Medium medium = scene_medium();
+  vec3 sum = vec3(0.0);
+  for (int i = 0; i < line_nodes; ++i) {
+    LineFragment f = line_fragment(i);
+    if (f.share != 0.0) sum += scattered_at(medium, ray, f);
+  }
+  if (sum == vec3(0.0)) discard;
+  radiance = vec4(sum, 0.0);
 }
 
 #endif  // LIMN_LINE_FRAGMENT_GLSL

@@ -174,10 +174,13 @@ CausticRay reflected_ray(Medium medium, SceneMaps maps, Incident at, SpecularEve
 
 #if PATHS & 2
 
-// Of the triangle on which light leaves a body.
-vec3 exit_triangle(BodyExit leaves) {
+// Of the triangle on which light leaves a body. By the edge of the body's picture the nearest texel may be beside it, where it has
+// the normal of another body or none: then the shading normal, which neighbours gave.
+vec3 exit_triangle(BodyExit leaves, float instance) {
   ivec2 size = textureSize(front_geometric_normal, 0).xy;
   ivec3 texel = ivec3(clamp(ivec2(leaves.uv * vec2(size)), ivec2(0), size - 1), leaves.layer);
+  float shown = leaves.front ? texelFetch(front_surface, texel, 0).w : texelFetch(back_surface, texel, 0).w;
+  if (abs(shown) != instance) return leaves.normal;
   return leaves.front ? geometric_normal_at(front_geometric_normal, texel)
                       : geometric_normal_at(back_geometric_normal, texel);
 }
@@ -193,7 +196,7 @@ CausticRay refracted_ray(Medium medium, SceneMaps maps, Incident at, SpecularEve
   SpecularEvent second = specular_event(at.optics, event.refracted, -leaves.normal, true);
   if (second.refracted == vec3(0.0)) return no_ray();
   flux *= second.transmittance * optics_absorption(at.optics, leaves.distance);
-  flux *= shading_flux(leaves.normal, exit_triangle(leaves), event.refracted, second.refracted);
+  flux *= shading_flux(leaves.normal, exit_triangle(leaves, at.instance), event.refracted, second.refracted);
   return ray_from(medium, maps, at, at.position + leaves.distance * event.refracted, second.refracted, flux);
 }
 

@@ -19,15 +19,3 @@ vec3 scattered_at(Medium medium, CausticRay ray, LineFragment f) {
   float weight = scale * f.share * caustic_even_weight(objects_distance, focal, lines_are_rectangles());
   return arriving * medium.scattering * (weight * 0.25 * inverse_pi);
 }
-
-void main() {
-  CausticRay ray = rays[ray_index];
-  Medium medium = scene_medium();
-  vec3 sum = vec3(0.0);
-  for (int i = 0; i < line_nodes; ++i) {
-    LineFragment f = line_fragment(i);
-    if (f.share != 0.0) sum += scattered_at(medium, ray, f);
-  }
-  if (sum == vec3(0.0)) discard;
-  radiance = vec4(sum, 0.0);
-}

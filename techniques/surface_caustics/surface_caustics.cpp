@@ -135,6 +135,9 @@ class SurfaceCaustics : public Technique {
     return irradiance;
   }
 
+  /// Returns how many runs of rays each layer of the caustic maps may have photons of.
+  static int runsOf(const caustics::CausticRays& rays) { return rays.paths * rays.pointLayers; }
+
   /// What draws the photons of each layer of the caustic maps: those of its light alone.
   static frame::BufferHandle addMapDraws(frame::FrameGraph& graph, const Photons& photons) {
     const caustics::CausticRays& rays = photons.rays;
@@ -144,19 +147,19 @@ class SurfaceCaustics : public Technique {
         .read(rays.layerLights, Access::storageLoad, "Layers", "light of each layer of rays")
         .read(rays.scene.lights, Access::storageLoad, "SceneLights", "layers of each light")
         .cacheable();
-    const int64_t commands = int64_t{rays.scene.layers} * rays.layers * rays.paths;
+    const int64_t commands = int64_t{rays.scene.layers} * runsOf(rays);
     const frame::BufferHandle draws = pass.write(
         graph.createBuffer("caustic map draws", {static_cast<size_t>(commands) * sizeof(glsl::RayDraw)}),
         Access::storageStore, "MapDraws", "photons of each layer's light");
     const auto program =
         pass.program({.files = {"techniques/surface_caustics/map_draws.comp.glsl"}, .defines = {}});
-    pass.execute([program, rays, commands](frame::PassContext& context) {
+    pass.execute([program, rays](frame::PassContext& context) {
       gpu::Program& kernel = context.use(program);
-      kernel.set("map_layers", static_cast<unsigned>(rays.scene.layers));
       kernel.set("layer_count", static_cast<unsigned>(rays.layers));
       kernel.set("path_count", static_cast<unsigned>(rays.paths));
       kernel.set("layer_rays", static_cast<unsigned>(rays.size * rays.size));
-      context.dispatchRows((commands + 63) / 64);
+      kernel.set("point_layers", static_cast<unsigned>(rays.pointLayers));
+      context.dispatchRows((int64_t{rays.layers} * rays.paths + 63) / 64);
     });
     return draws;
   }
@@ -182,7 +185,7 @@ class SurfaceCaustics : public Technique {
     pass.execute([=, this](frame::PassContext& context) {
       const gl::Functions& gl = context.gl();
       gl.BindBuffer(GL_DRAW_INDIRECT_BUFFER, context.buffer(draws).id());
-      const int runs = photons.rays.layers * photons.rays.paths;
+      const int runs = runsOf(photons.rays);
       for (int layer = 0; layer < photons.rays.scene.layers; ++layer) {
         context.bindFramebuffer({{maps, 0, layer}});
         photons.begin(context, empty_).set("map_layer", layer);

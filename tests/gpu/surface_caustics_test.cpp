@@ -59,6 +59,10 @@ TEST_F(SurfaceCausticsTest, ABodyThatLiesInTwoViewsRefractsAsOne) {
                                                 {technique("surface_caustics", {{"buffer_size", "384"}})}));
   EXPECT_NEAR(mean(ours) / mean(truth), 1, 0.03);
   EXPECT_LT(relativeRms(ours, truth), 0.15);
+  const Image map = picture(
+      renderer, settings(width, height, Term::caustic,
+                         {technique("surface_caustics", {{"buffer_size", "384"}, {"splat", "light"}})}));
+  EXPECT_NEAR(mean(map) / mean(truth), 1, 0.05);
 }
 
 /// Where light goes does not depend on who looks, in a medium or without one.
@@ -262,6 +266,30 @@ TEST_F(SurfaceCausticsTest, CausticMapsShowWhatPhotonsOnTheScreenDo) {
     EXPECT_NEAR(mean(map) / mean(screen), 1, ofMean);
     EXPECT_LT(relativeRms(map, screen), ofRms);
   }
+}
+
+/// Layers of the maps have draws for photons of their own point on the light alone: as many for each, however
+/// many points there are.
+TEST_F(SurfaceCausticsTest, DrawsOfCausticMapsGrowWithThePointsOnLights) {
+  scene::Scene scene = asset("glass_sphere");
+  for (scene::Node& node : scene.nodes)
+    if (node.light != scene::kNone) node.limnArea = {0.2f, 0.2f};
+  render::Renderer renderer(device(), scene);
+  const auto bytesOfDraws = [&](const char* points) {
+    picture(renderer, settings(8, 6, Term::caustic,
+                               {technique("surface_caustics", {{"splat", "light"},
+                                                               {"buffer_size", "8"},
+                                                               {"scene_map_size", "16"},
+                                                               {"light_samples", points}})}));
+    int64_t bytes = 0;
+    for (const auto& pass : renderer.explain())
+      for (const auto& access : pass.accesses)
+        if (pass.name == "caustic map draws" && access.write) bytes += access.bytes;
+    return bytes;
+  };
+  const int64_t two = bytesOfDraws("2");
+  EXPECT_GT(two, 0);
+  EXPECT_EQ(bytesOfDraws("16"), 8 * two);
 }
 
 /// A point light's map is a cube: photons near its edges lie in two faces.

@@ -1,8 +1,10 @@
 // Densities of media: lookups, integrals along rays, and the laws of procedural smoke.
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <cmath>
 #include <random>
+#include <vector>
 
 #include "core/bench/private/stress_scene.h"
 #include "glsl/scene/media.glsl"
@@ -132,6 +134,21 @@ TEST(Smoke, FollowsFromTimeAloneAndMovesSmoothly) {
   other.seed = 5;
   EXPECT_GT(difference(first, smokeAt(other, 2)), 0.03);
   EXPECT_LT(difference(smokeAt(smoke, 1e5), smokeAt(smoke, 1e5 + 0.01)), 0.02) << "after a day, too";
+}
+
+/// Of a scene whose geometry comes later there are no bounds, and of a single point they have no sides.
+TEST(Smoke, HasVoxelsWhereTheSceneHasNoSize) {
+  const vec3 point(2, 0, -3);
+  for (const Bounds& bounds : {Bounds{}, Bounds{point, point}}) {
+    const Smoke smoke = smokeIn(bounds);
+    const vec3 extent = smoke.high - smoke.low;
+    EXPECT_TRUE(glm::all(glm::greaterThan(extent, vec3(0.9f))) &&
+                glm::all(glm::lessThan(extent, vec3(1.1f))));
+    EXPECT_TRUE(smoke.whirl > 0.1f && smoke.rise > 0.01f);
+    EXPECT_TRUE(glm::all(glm::greaterThan(smokeVoxels(smoke), glm::ivec3(smoke.resolution / 2))));
+    const std::vector<float> values = smokeAt(smoke, 1).values;
+    EXPECT_TRUE(std::ranges::any_of(values, [](float v) { return v > 0.1f; }));
+  }
 }
 
 TEST(Smoke, ScalesWithItsScene) {
