@@ -48,7 +48,9 @@ struct FrameHistoryService::Kept {
     glsl::HistoryFrame view{};
   };
   int frames = 0, parts = 0;
-  bool moves = false;  ///< animations or geometry do: what a still camera sees may be another surface
+  /// Animations, geometry or joints, of which instances say nothing, may: what a still camera sees may be
+  /// another surface.
+  bool moves = false;
   std::array<std::optional<Slot>, kMostFrames> slots;
   std::array<glsl::HistoryFrame, kMostFrames> found{};  ///< those before this frame, the oldest first
   int count = 0;
@@ -118,7 +120,8 @@ frame::TextureHandle FrameHistoryService::average(const GBuffer& gbuffer, frame:
   const glm::ivec2 size(desc.width, desc.height);
   kept.frames = frames;
   kept.parts = desc.layers;
-  kept.moves = !scene_.scene().animations.empty() || !scene_.scene().dynamic.empty();
+  kept.moves = !scene_.scene().animations.empty() || !scene_.scene().dynamic.empty() ||
+               !context().pose.deformed.empty();
   desc.layers *= frames;
   kept.light = gpu::Texture(device, "light of frames", desc);
   desc.layers = frames;

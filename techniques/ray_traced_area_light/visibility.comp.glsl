@@ -16,8 +16,9 @@ uniform uint light_indices[LIGHT_COUNT];
 uniform int rays;
 
 // How far rays start above the receiver: of its distance to the camera, because GPUs snap vertices to a 256th of a pixel, so
-// that a pixel's depth is known to some 2e-5 of it; and no less than coordinates round by, of the largest. Before the light, of
-// which no depth was drawn, rays end by the latter.
+// that a pixel's depth is known to some 2e-5 of it; and no less than coordinates round by, of the largest. Before a rectangle, of
+// which no depth was drawn, rays end by the latter. A lamp without extent may be mounted on a surface, which rounding puts on
+// either side of it, the more so the flatter rays meet it: before that they end by 16 times as much, as the reference's do.
 const float snapping_clearance = 6.103515625e-5;      // 2^-14
 const float rounding_clearance = 9.5367431640625e-7;  // 2^-20
 const float unlimited = 3.0e38;
@@ -98,6 +99,9 @@ void main() {
       if (light.type == light_rectangle) {
         float reach = largest(abs(light.position) + abs(light.axis_u) * light.length_u + abs(light.axis_v) * light.length_v);
         r.clearance = light.direction * (rounding_clearance * reach * rectangle_side(light, position));
+      } else if (r.finite) {
+        float clearance = 16.0 * rounding_clearance * max(largest(light.position), view.depth);
+        r.clearance = view.axis * min(clearance, 0.5 * view.depth);
       }
       v = lit_share(view, r, texelFetch(blue_noise, at.xy % textureSize(blue_noise, 0), 0).xy);
     }

@@ -217,23 +217,36 @@ TEST_F(FrameHistoryTest, GeometryThatChangesLeavesNoTraceOnWhatItHid) {
   expectNoTrace(before, now, at(3));
 }
 
-/// Nodes that are placed by hand move without an animation: the short block, into the tall one.
+/// Nodes that are placed by hand move without an animation: the short block, into the tall one, as itself and
+/// as the joint of its skin, which no instance's matrix shows.
 TEST_F(FrameHistoryTest, WhatIsPlacedElsewhereLeavesNoTraceOnWhatItHid) {
-  scene::Scene scene = asset("cornell_box");
-  render::Renderer renderer(device(), scene);
-  const scene::CameraPose camera = renderer.pose().cameras.at(0);
-  render::Settings s = gathered(64, kFrames);
-  s.channels = true;
-  renderer.configure(s);
-  Image before;
-  for (int frame = 0; frame < kFrames; ++frame) before = next(renderer, camera);
-  const glm::mat4 inside = glm::translate(glm::mat4(1), {-0.34f, 0, -0.3f});
-  nodeOf(scene, "short_block").placed =
-      glm::translate(glm::scale(inside, glm::vec3(0.6f)), {-0.33f, 0, -0.35f});
-  renderer.setTime(0);
-  const Image now = next(renderer, camera);
-  renderer.configure(s);
-  expectNoTrace(before, now, next(renderer, camera));
+  for (const bool skinned : {false, true}) {
+    SCOPED_TRACE(skinned ? "skinned" : "rigid");
+    scene::Scene scene = asset("cornell_box");
+    scene::Node& block = nodeOf(scene, "short_block");
+    if (skinned) {
+      for (scene::Primitive& primitive : scene.meshes[static_cast<size_t>(block.mesh)].primitives) {
+        primitive.joints.assign(primitive.positions.size(), glm::u16vec4(0));
+        primitive.weights.assign(primitive.positions.size(), glm::vec4(1, 0, 0, 0));
+        primitive.jointBounds = {{uint16_t{0}, primitive.bounds}};
+      }
+      block.skin = static_cast<int>(scene.skins.size());
+      scene.skins.push_back({{static_cast<int>(&block - scene.nodes.data())}, {glm::mat4(1)}});
+    }
+    render::Renderer renderer(device(), scene);
+    const scene::CameraPose camera = renderer.pose().cameras.at(0);
+    render::Settings s = gathered(64, kFrames);
+    s.channels = true;
+    renderer.configure(s);
+    Image before;
+    for (int frame = 0; frame < kFrames; ++frame) before = next(renderer, camera);
+    const glm::mat4 inside = glm::translate(glm::mat4(1), {-0.34f, 0, -0.3f});
+    block.placed = glm::translate(glm::scale(inside, glm::vec3(0.6f)), {-0.33f, 0, -0.35f});
+    renderer.setTime(0);
+    const Image now = next(renderer, camera);
+    renderer.configure(s);
+    expectNoTrace(before, now, next(renderer, camera));
+  }
 }
 
 /// Where other things may move, flat instances, whose matrices have no inverse, keep their history.

@@ -249,6 +249,34 @@ TEST_F(RayClearanceTest, LeavesCloseToTheCameraShadeTheirFloorFarFromTheOrigin) 
   EXPECT_GT(below, 100);
 }
 
+/// Mounted on a ceiling, in whose plane it lies, level or tilted, at any scale: the ceiling does not hide the
+/// lamp, on whichever side of it rounding puts it.
+TEST_F(RayClearanceTest, ALampInTheCeilingLightsTheFloor) {
+  using glm::vec3;
+  for (const float tilt : {0.f, 0.4f}) {
+    for (const float size : {1e-3f, 1.f, 1e3f}) {
+      SCOPED_TRACE(testing::Message() << "tilt " << tilt << ", size " << size);
+      const glm::mat4 room = glm::rotate(glm::scale(glm::mat4(1), vec3(size)), tilt, vec3(0, 0, 1));
+      const auto placed = [&](float x, float y, float z) { return vec3(room * glm::vec4(x, y, z, 1)); };
+      scene::Scene scene;
+      scene::Pose pose;
+      test::addMesh(scene, test::floorPrimitive(2, test::addMaterial(scene)));
+      test::addInstance(scene, pose, 0, room);
+      test::addInstance(scene, pose, 0, room * test::at(0, 1.5f, 0));
+      test::addLight(pose, test::pointLight(placed(0.3f, 1.5f, 0.1f)));
+      const scene::CameraPose camera = scene::lookAt(placed(0, 1.2f, 0.3f), vec3(0), 1.4f);
+      const test::Answer v = visibility("ray_traced_area_light", {{"filter", "none"}}, scene, pose, camera);
+      int floor = 0;
+      for (size_t i = 0; i < v.instance.size(); ++i) {
+        if (v.instance[i] != 0) continue;
+        ++floor;
+        ASSERT_EQ(v.lights[0][i], 1.f);
+      }
+      EXPECT_GT(floor, 5000);
+    }
+  }
+}
+
 /// Balls that a scale between two turns makes discs. What rounds their matrices looks like an inverse.
 TEST_F(RayClearanceTest, FlatInstancesHideWhatDiscsHide) {
   using glm::vec3;
