@@ -65,12 +65,20 @@ GatherSettings gatherSettings(const ParameterValues& p) {
           .edges = p.real("edges")};
 }
 
-VirtualLightDesc virtualLightDesc(const ParameterValues& p) {
-  return {.count = p.integer("vpls"),
-          .mapSize = p.integer("rsm_size"),
-          .lightSamples = p.integer("light_samples"),
-          .sets = p.integer("history"),
-          .block = p.integer("history") > 1 ? usableBlock(p.integer("block"), p.integer("vpls")) : 1};
+std::optional<VirtualLights> virtualLightsOf(frame::FrameGraph& graph, const TechniqueInputs& inputs,
+                                             const TermRequest& request, std::string_view technique) {
+  if (request.lights.empty()) {
+    graph.leaveOut("indirect light", technique, "the scene has no light");
+    return std::nullopt;
+  }
+  const ParameterValues& p = inputs.parameters;
+  const int history = p.integer("history");
+  return inputs.service<VirtualLightService>().request(
+      request.lights, {.count = p.integer("vpls"),
+                       .mapSize = p.integer("rsm_size"),
+                       .lightSamples = p.integer("light_samples"),
+                       .sets = history,
+                       .block = history > 1 ? usableBlock(p.integer("block"), p.integer("vpls")) : 1});
 }
 
 Gather::Gather(frame::FrameGraph& graph, const TechniqueInputs& inputs, std::string_view technique,

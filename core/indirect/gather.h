@@ -100,7 +100,10 @@ struct GatherSettings {
   float edges = 0;  ///< means of the light of 16 x 16 pixels; 0: no pixels get all virtual lights
 };
 LIMN_API GatherSettings gatherSettings(const ParameterValues& parameters);
-LIMN_API VirtualLightDesc virtualLightDesc(const ParameterValues& parameters);
+/// Returns the virtual lights of a request that the parameters above ask for; nothing where it has no light,
+/// which is reported.
+LIMN_API std::optional<VirtualLights> virtualLightsOf(frame::FrameGraph& graph, const TechniqueInputs& inputs,
+                                                      const TermRequest& request, std::string_view technique);
 
 /// Returns the side of the pattern of interleaved pixels: at most `block`, and with no more sub-buffers than
 /// virtual lights, so that every pixel has a light.

@@ -1,7 +1,8 @@
-// Declares one paraboloid map for each virtual point light: its view, and the pass that shades with one test
+// Declares one paraboloid map for each virtual point light: its view, and the passes that shade with one test
 // per map. The techniques fill the maps.
 #pragma once
 
+#include <algorithm>
 #include <optional>
 #include <string_view>
 
@@ -42,5 +43,27 @@ struct LightMaps {
 /// a light whose map holds, at the receiver's texel, something nearer that lies above the receiver's tangent
 /// plane by more than `bias` texel footprints.
 LIMN_API ShadePass lightMapShadePass(const TechniqueInputs& inputs, const ParaboloidMaps& maps, float bias);
+
+/// Adds the light of virtual lights with a map each to the request's target, and returns the target after it.
+/// The technique declares the parameter `bias` as well, and keeps in `made` what requests of one graph share.
+/// `draw(views, desc)` returns the maps of some of the lights: those of all at once, or batch by batch.
+template <class Draw>
+frame::TextureHandle addMappedLight(frame::FrameGraph& graph, const TechniqueInputs& inputs,
+                                    const TermRequest& request, const VirtualLights& lights,
+                                    const LightMapDesc& desc, MadeForLights<LightMaps>& made, Draw draw) {
+  LightMaps& maps = made.get(request.lights,
+                             [&] { return LightMaps{.views = addLightViews(graph, inputs, lights, desc)}; });
+  Gather gather(graph, inputs, desc.technique, lights, gatherSettings(inputs.parameters));
+  for (int first = 0; first < lights.count; first += desc.batch) {
+    const ParaboloidDesc part{.count = std::min(desc.batch, lights.count - first),
+                              .first = first,
+                              .size = desc.size,
+                              .technique = desc.technique,
+                              .cacheable = desc.batch == lights.count};
+    const ParaboloidMaps drawn = maps.get(part.cacheable, [&] { return draw(maps.views, part); });
+    gather.shade(lightMapShadePass(inputs, drawn, inputs.parameters.real("bias")));
+  }
+  return gather.finish(request.target);
+}
 
 }  // namespace limn::indirect

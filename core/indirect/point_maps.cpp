@@ -15,6 +15,7 @@ using frame::BufferHandle;
 
 constexpr int kFillTile = 64;  // texels per side of what a work group fills
 constexpr int kCopied = 16;    // the same where nothing is filled
+constexpr int kWindows = 16;   // the pool of points holds as many times what one map takes
 
 size_t depthBytes(const PointMapDesc& desc) {
   return sizeof(float) * static_cast<size_t>(desc.size) * static_cast<size_t>(desc.size) *
@@ -133,6 +134,15 @@ ParaboloidMaps PointMapPass::add(frame::FrameGraph& graph, const gpu::Device& de
           .count = desc.count,
           .first = desc.first,
           .size = desc.size};
+}
+
+PointMapPass& pointMapPass(std::optional<PointMapPass>& pass, frame::FrameGraph& graph,
+                           const TechniqueInputs& inputs, int points, std::string_view technique) {
+  if (!pass) {
+    pass.emplace(inputs.gpuScene.device(), inputs.scene, inputs.pose, points, kWindows);
+    pass->place(graph, inputs.handles, technique);
+  }
+  return *pass;
 }
 
 }  // namespace limn::indirect

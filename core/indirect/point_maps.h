@@ -6,6 +6,7 @@
 // at: a masked surface blocks as a whole.
 #pragma once
 
+#include <optional>
 #include <string_view>
 
 #include "core/frame/frame_graph.h"
@@ -52,5 +53,10 @@ class LIMN_API PointMapPass {
   ScenePoints points_;
   frame::BufferHandle placed_;
 };
+
+/// Returns the pass of a technique that fills maps from `points` points each: `pass`, which is made and has
+/// its points placed when it is asked for the first time.
+LIMN_API PointMapPass& pointMapPass(std::optional<PointMapPass>& pass, frame::FrameGraph& graph,
+                                    const TechniqueInputs& inputs, int points, std::string_view technique);
 
 }  // namespace limn::indirect

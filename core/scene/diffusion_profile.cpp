@@ -3,6 +3,8 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <cstddef>
+#include <optional>
 
 #include "core/image/byte_values.h"
 #include "core/scene/draw_instance.h"
@@ -21,14 +23,36 @@ bool scatterAlike(const Material& a, const Material& b) {
          (!s.albedoFromBaseColour || a.baseColourTexture.image == b.baseColourTexture.image);
 }
 
-TranslucentKind kindOf(const Scene& scene, const Material& material) {
+/// Returns for each material the mean colour of the vertices that are drawn with it, where it is a factor on
+/// an albedo, else 1.
+std::vector<glm::vec3> meanVertexColours(const Scene& scene, const Pose& pose) {
+  std::vector<glm::dvec3> sums(scene.materials.size(), glm::dvec3(0));
+  std::vector<double> counts(scene.materials.size(), 0.0);
+  for (const DrawInstance& instance : pose.instances) {
+    const auto index = static_cast<size_t>(materialIndexOf(scene, instance));
+    const std::optional<Subsurface>& subsurface = scene.materials[index].subsurface;
+    if (!subsurface || !subsurface->albedoFromBaseColour) continue;
+    const Primitive& primitive = primitiveOf(scene, pose, instance);
+    const auto vertices = static_cast<double>(primitive.positions.size());
+    counts[index] += vertices;
+    if (primitive.colours.empty()) sums[index] += glm::dvec3(vertices);
+    for (const glm::vec4& colour : primitive.colours) sums[index] += glm::dvec3(colour);
+  }
+  std::vector<glm::vec3> means(sums.size(), glm::vec3(1));
+  for (size_t i = 0; i < means.size(); ++i)
+    if (counts[i] > 0) means[i] = glm::vec3(sums[i] / counts[i]);
+  return means;
+}
+
+/// `vertexColour`: the mean of what it is drawn with.
+TranslucentKind kindOf(const Scene& scene, const Material& material, const glm::vec3& vertexColour) {
   const Subsurface& s = *material.subsurface;
   TranslucentKind kind{.extinction = s.extinction,
                        .absorption = s.absorption,
                        .ior = subsurfaceIor(material.ior),
                        .textured = s.albedoFromBaseColour};
   if (kind.textured) {
-    kind.albedo = baseAlbedo(scene, material, OfTexels::mean);
+    kind.albedo = vertexColour * baseAlbedo(scene, material, OfTexels::mean);
     kind.absorption = subsurfaceAbsorption(kind.albedo, kind.ior);
   }
   return kind;
@@ -94,17 +118,19 @@ TranslucentKinds translucentKinds(const Scene& scene, const Pose& pose) {
   for (const DrawInstance& instance : pose.instances)
     drawn[static_cast<size_t>(materialIndexOf(scene, instance))] = true;
   TranslucentKinds result;
-  std::vector<const Material*> kept;  // of each kind
+  const std::vector<glm::vec3> colours = meanVertexColours(scene, pose);
+  std::vector<size_t> kept;  // a material of each kind
   for (size_t i = 0; i < scene.materials.size(); ++i) {
     const Material& material = scene.materials[i];
     uint32_t& kind = result.ofMaterials.emplace_back(~0u);
     if (!drawn[i] || !material.subsurface) continue;
-    const auto same =
-        std::ranges::find_if(kept, [&](const Material* other) { return scatterAlike(material, *other); });
+    const auto same = std::ranges::find_if(kept, [&](size_t other) {
+      return scatterAlike(material, scene.materials[other]) && colours[i] == colours[other];
+    });
     kind = static_cast<uint32_t>(same - kept.begin());
     if (same != kept.end()) continue;
-    kept.push_back(&material);
-    result.kinds.push_back(kindOf(scene, material));
+    kept.push_back(i);
+    result.kinds.push_back(kindOf(scene, material, colours[i]));
     result.textured = result.textured || result.kinds.back().textured;
   }
   return result;

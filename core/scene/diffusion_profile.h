@@ -8,6 +8,7 @@
 #include <glm/glm.hpp>
 #include <vector>
 
+#include "core/base/parameters.h"
 #include "core/scene/scene.h"
 
 namespace limn::scene {
@@ -18,6 +19,19 @@ struct ChannelProfile {
   std::function<double(double)> share;  ///< of the light that leaves, what does so within a radius in metres
 };
 using Profile = std::array<ChannelProfile, 3>;
+
+inline constexpr const char* kProfileNames[] = {"dipole", "normalised_diffusion"};
+/// Returns the parameter of techniques that choose between two profiles.
+constexpr Parameter profileParameter() {
+  return choice(
+      "profile", 0, kProfileNames,
+      "Light over the distance from where it entered: the dipole of sources, or two exponentials with "
+      "the reflectance of a random walk");
+}
+/// Returns whether normalised diffusion is chosen, which is NORMALISED of glsl/diffusion/profile.glsl.
+inline bool normalisedProfile(const ParameterValues& parameters) {
+  return parameters.choice("profile") == 1;
+}
 
 /// Returns the dipole's profile of a half space, or that of normalised diffusion. `extinction`: sigma_t', per
 /// metre; `absorption`: sigma_a / sigma_t'.
@@ -42,9 +56,9 @@ LIMN_API glm::vec3 baseAlbedo(const Scene& scene, const Material& material, OfTe
 struct TranslucentKind {
   glm::vec3 extinction{0};  ///< sigma_t', per metre
   glm::vec3 absorption{0};  ///< sigma_a / sigma_t'; of the mean albedo where that is textured
-  glm::vec3 albedo{0};      ///< the mean, where it is textured
-  float ior = 1;            ///< 1 to 3
-  bool textured = false;    ///< the albedo is the base colour of each pixel
+  glm::vec3 albedo{0};  ///< where it is textured: the mean of its texels times that of its vertices' colours
+  float ior = 1;        ///< 1 to 3
+  bool textured = false;  ///< the albedo is the base colour of each pixel
 };
 
 /// Holds the translucent materials that a scene draws, those that scatter alike once.

@@ -20,7 +20,6 @@ namespace {
 using namespace limn;
 using frame::Access;
 
-constexpr int kWindows = 16;         // the pool of points holds as many times what one map takes
 constexpr float kFillDepth = 0.05f;  // of far - near: depths farther apart are not averaged in holes
 
 constexpr const char* kMaps[] = {"triangles", "points"};
@@ -105,18 +104,15 @@ class ClusteredVisibility : public Technique {
       return trianglePasses_.emplace_back().add(graph, inputs.gpuScene, inputs.handles, areas.views,
                                                 {.count = areas.count, .size = size, .technique = info.name});
     const int points = p.integer("points");
-    if (!points_) {
-      points_.emplace(inputs.gpuScene.device(), inputs.scene, inputs.pose, points, kWindows);
-      points_->place(graph, inputs.handles, info.name);
-    }
-    return points_->add(graph, inputs.gpuScene.device(), areas.views,
-                        {.count = areas.count,
-                         .size = size,
-                         .points = points,
-                         .splat = p.real("splat"),
-                         .fillLevels = p.integer("fill_levels"),
-                         .fillDepth = kFillDepth,
-                         .technique = info.name});
+    return indirect::pointMapPass(points_, graph, inputs, points, info.name)
+        .add(graph, inputs.gpuScene.device(), areas.views,
+             {.count = areas.count,
+              .size = size,
+              .points = points,
+              .splat = p.real("splat"),
+              .fillLevels = p.integer("fill_levels"),
+              .fillDepth = kFillDepth,
+              .technique = info.name});
   }
 
   /// The picture of the clusters, instead of light.
@@ -194,29 +190,26 @@ class ClusteredVisibility : public Technique {
 
   frame::TextureHandle addPasses(frame::FrameGraph& graph, const TechniqueInputs& inputs,
                                  const TermRequest& request) override {
-    if (request.lights.empty()) {
-      graph.leaveOut("indirect light", info.name, "the scene has no light");
-      return request.target;
-    }
+    std::optional<indirect::VirtualLights> lights =
+        indirect::virtualLightsOf(graph, inputs, request, info.name);
+    if (!lights) return request.target;
     const ParameterValues& p = inputs.parameters;
     const indirect::GatherSettings settings = indirect::gatherSettings(p);
-    indirect::VirtualLights lights = inputs.service<indirect::VirtualLightService>().request(
-        request.lights, indirect::virtualLightDesc(p));
     Made& made = made_.get(request.lights, [&] {
-      return Made{.areas =
-                      indirect::addVirtualAreas(graph, inputs.gpuScene, lights.lights, lights.count,
-                                                {.count = p.integer("vals"),
-                                                 .iterations = p.integer("iterations"),
-                                                 .weightPosition = p.real("weight_position"),
-                                                 .weightAngle = p.real("weight_angle"),
-                                                 .near = p.real("near"),
-                                                 .mapSize = p.integer("map_size"),
-                                                 .block = indirect::usableBlock(settings.block, lights.count),
-                                                 .technique = info.name})};
+      return Made{
+          .areas = indirect::addVirtualAreas(graph, inputs.gpuScene, lights->lights, lights->count,
+                                             {.count = p.integer("vals"),
+                                              .iterations = p.integer("iterations"),
+                                              .weightPosition = p.real("weight_position"),
+                                              .weightAngle = p.real("weight_angle"),
+                                              .near = p.real("near"),
+                                              .mapSize = p.integer("map_size"),
+                                              .block = indirect::usableBlock(settings.block, lights->count),
+                                              .technique = info.name})};
     });
     if (p.choice("show") == 1) return showClusters(graph, inputs, made.areas, request.target);
-    lights.lights = made.areas.lights;
-    indirect::Gather gather(graph, inputs, info.name, lights, settings);
+    lights->lights = made.areas.lights;
+    indirect::Gather gather(graph, inputs, info.name, *lights, settings);
     if (!made.pass) made.pass = shadePass(graph, inputs, made.areas);
     gather.shade(*made.pass);
     return gather.finish(request.target);

@@ -50,10 +50,12 @@ BodyPoints::BodyPoints(const scene::Scene& scene, const scene::Pose& pose, int c
           "hierarchical_subsurface: {} or more points and clusters take {} MiB; a storage block holds {}",
           nodes, bytes >> 20, mostBytes >> 20));
   };
+  // How many points halved edges make is not known before: long thin triangles make many.
+  const size_t most = static_cast<size_t>(mostBytes) / sizeof(glsl::ScatterNode);
   size_t slots = 0;
   for (uint32_t draw = 0; draw < drawCount_; ++draw)
     if (scene::materialOf(scene, pose.instances[draw]).subsurface) {
-      parts_.push_back(makeBody(draw, pose, count));
+      parts_.push_back(makeBody(draw, pose, count, most));
       slots += parts_.back().elements->forest().leafSlots();
       check(slots);  // before all other bodies have taken their memory
     }
@@ -89,14 +91,15 @@ void BodyPoints::update(const scene::Pose& pose) {
   }
 }
 
-BodyPoints::Body BodyPoints::makeBody(uint32_t draw, const scene::Pose& pose, int count) const {
+BodyPoints::Body BodyPoints::makeBody(uint32_t draw, const scene::Pose& pose, int count, size_t most) const {
+  constexpr size_t countable = std::numeric_limits<uint32_t>::max();
   Body body;
   body.draw = draw;
   copyDraw(pose, draw, body.pose);
   body.pose.bounds = scene::instanceBounds(scene_, pose, pose.instances[draw]);
   const auto create = [&](float longestEdge) {
-    body.elements = std::make_unique<radiosity::SceneElements>(scene_, body.pose, longestEdge,
-                                                               std::numeric_limits<uint32_t>::max());
+    body.elements = std::make_unique<radiosity::SceneElements>(
+        scene_, body.pose, longestEdge, static_cast<uint32_t>(std::min(most, countable)));
     const radiosity::Surfels& surfels = body.elements->surfels();
     body.areas.assign(body.elements->forest().leafSlots(), 0);
     float area = 0, square = 0;

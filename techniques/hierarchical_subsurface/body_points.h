@@ -29,8 +29,6 @@ class BodyPoints {
   /// Moves the points to `pose`, which must fit; areas stay.
   void update(const scene::Pose& pose);
 
-  /// Returns whether no draw is a body.
-  bool empty() const { return parts_.empty(); }
   /// Returns an element for each draw instance; of those that are no bodies all is 0.
   std::span<const glsl::ScatterBody> bodies() const { return bodies_; }
   /// Returns where each leaf is lit.
@@ -50,7 +48,8 @@ class BodyPoints {
     std::optional<glm::dmat4> toOwn;
     glm::dmat4 motion{1};  ///< takes the elements from where they are to where the draw is, world
   };
-  Body makeBody(uint32_t draw, const scene::Pose& pose, int count) const;
+  /// Throws UsageError for more than `most` points.
+  Body makeBody(uint32_t draw, const scene::Pose& pose, int count, size_t most) const;
   void place(size_t index);
 
   const scene::Scene& scene_;

@@ -22,7 +22,7 @@ void main() {
   if ((surface.flags & gbuffer_flag_translucent) == 0u) return;
   ScatterBody body = bodies[pixel_instance(pixel)];
   DiffusionBoundary boundary = diffusion_boundary(body.eta);
-  ScatterMatter matter = scatter_matter(body, boundary, surface.base_colour);
+  ProfileColours matter = scatter_matter(body, boundary, surface.base_colour);
   vec3 position = pixel_position(pixel, depth);
   vec3 x = (position - body.centre) / body.radius;
   vec3 leaving = scatter_near(matter, body.softening) * texelFetch(entering, pixel, 0).rgb +

@@ -4,6 +4,7 @@
 #include <string>
 
 #include "core/gpu_scene/gpu_scene.h"
+#include "core/scene/diffusion_profile.h"
 #include "core/shadow/entering_light.h"
 #include "core/shadow/visibility_pass.h"
 #include "core/technique/technique.h"
@@ -15,9 +16,8 @@ using namespace limn;
 using frame::Access;
 using hierarchical_subsurface::BodyPoints;
 
-constexpr const char* kProfiles[] = {"dipole", "normalised_diffusion"};
 constexpr Parameter kParameters[] = {
-    choice("profile", 0, kProfiles, "How light spreads below a surface"),
+    scene::profileParameter(),
     integer("points", 16384, {16, 65536}, "points",
             "About how many there are on each body; bodies with more vertices have a point at each")
         .quality()
@@ -55,10 +55,6 @@ class HierarchicalSubsurface : public Technique {
                                  const TermRequest& request) override {
     points_.emplace(inputs.scene, inputs.pose, inputs.parameters.integer("points"),
                     inputs.gpuScene.device().limits().maxStorageBlockBytes);
-    if (points_->empty()) {
-      graph.leaveOut("light below surfaces", info.name, "no surface is translucent");
-      return request.target;
-    }
     createBuffers(inputs.gpuScene.device());
     addUpdate(graph, inputs);
     return addGather(graph, inputs, request.target, addSums(graph, addLight(graph, inputs, request)));
@@ -149,9 +145,9 @@ class HierarchicalSubsurface : public Technique {
         .read(entering, Access::storageLoad, "Entering", "light that enters there");
     const frame::TextureHandle result =
         pass.write(target, Access::imageLoadStore, "radiance", "light from below surfaces");
-    const auto program = pass.program(
-        {.files = {"techniques/hierarchical_subsurface/gather.comp.glsl"},
-         .defines = {{"NORMALISED_DIFFUSION", std::to_string(inputs.parameters.choice("profile"))}}});
+    const auto program =
+        pass.program({.files = {"techniques/hierarchical_subsurface/gather.comp.glsl"},
+                      .defines = {{"NORMALISED", scene::normalisedProfile(inputs.parameters) ? "1" : "0"}}});
     pass.execute([program, size = inputs.size,
                   tolerance = inputs.parameters.real("tolerance")](frame::PassContext& context) {
       context.use(program).set("tolerance", tolerance);

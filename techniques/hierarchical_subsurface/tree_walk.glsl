@@ -12,7 +12,7 @@ LIMN_FN bool scatter_opens(ScatterNode node, float softened2, float tolerance) {
 
 // What the points below `first` and behind it send to x. Clusters follow each other in depth-first order, so that no stack is
 // needed: a cluster that is opened leads to its first child, all else to what comes behind it.
-LIMN_FN vec3 light_of_points(uint first, vec3 x, ScatterMatter matter, float softening, float tolerance) {
+LIMN_FN vec3 light_of_points(uint first, vec3 x, ProfileColours matter, float softening, float tolerance) {
   vec3 sum = vec3(0.0f);
   uint at = first;
   while (at != scatter_none) {

@@ -13,8 +13,6 @@ namespace {
 
 using namespace limn;
 
-constexpr int kWindows = 16;  // the pool of points holds as many times what one map takes
-
 constexpr auto kParameters = indirect::gatherParameters(std::to_array<Parameter>({
     integer("map_size", 64, {8, 512}, "texels", "Width and height of each virtual light's map")
         .quality()
@@ -55,41 +53,28 @@ class ImperfectShadowMaps : public Technique {
  private:
   frame::TextureHandle addPasses(frame::FrameGraph& graph, const TechniqueInputs& inputs,
                                  const TermRequest& request) override {
-    if (request.lights.empty()) {
-      graph.leaveOut("indirect light", info.name, "the scene has no light");
-      return request.target;
-    }
+    const auto lights = indirect::virtualLightsOf(graph, inputs, request, info.name);
+    if (!lights) return request.target;
     const ParameterValues& p = inputs.parameters;
-    const indirect::VirtualLights lights = inputs.service<indirect::VirtualLightService>().request(
-        request.lights, indirect::virtualLightDesc(p));
+    gpu::Device& device = inputs.gpuScene.device();
     const int size = p.integer("map_size");
-    const int batch = std::min(lights.count, indirect::pointMapBatch(inputs.gpuScene.device(), size));
-    indirect::LightMaps& maps = maps_.get(request.lights, [&] {
-      return indirect::LightMaps{
-          .views = indirect::addLightViews(graph, inputs, lights,
-                                           {.size = size, .batch = batch, .technique = info.name})};
-    });
-    const int points = p.integer("points");
-    if (!points_) {
-      points_.emplace(inputs.gpuScene.device(), inputs.scene, inputs.pose, points, kWindows);
-      points_->place(graph, inputs.handles, info.name);
-    }
-    indirect::Gather gather(graph, inputs, info.name, lights, indirect::gatherSettings(p));
-    for (int first = 0; first < lights.count; first += batch) {
-      const indirect::PointMapDesc desc{.count = std::min(batch, lights.count - first),
-                                        .first = first,
-                                        .size = size,
-                                        .points = points,
-                                        .splat = p.real("splat"),
-                                        .fillLevels = p.integer("fill_levels"),
-                                        .fillDepth = p.real("fill_depth"),
-                                        .technique = info.name,
-                                        .cacheable = batch == lights.count};
-      const indirect::ParaboloidMaps filled = maps.get(
-          desc.cacheable, [&] { return points_->add(graph, inputs.gpuScene.device(), maps.views, desc); });
-      gather.shade(indirect::lightMapShadePass(inputs, filled, p.real("bias")));
-    }
-    return gather.finish(request.target);
+    const int batch = std::min(lights->count, indirect::pointMapBatch(device, size));
+    const auto fill = [&](frame::BufferHandle views, const indirect::ParaboloidDesc& desc) {
+      const int points = p.integer("points");
+      return indirect::pointMapPass(points_, graph, inputs, points, info.name)
+          .add(graph, device, views,
+               {.count = desc.count,
+                .first = desc.first,
+                .size = desc.size,
+                .points = points,
+                .splat = p.real("splat"),
+                .fillLevels = p.integer("fill_levels"),
+                .fillDepth = p.real("fill_depth"),
+                .technique = desc.technique,
+                .cacheable = desc.cacheable});
+    };
+    return indirect::addMappedLight(graph, inputs, request, *lights,
+                                    {.size = size, .batch = batch, .technique = info.name}, maps_, fill);
   }
 
   bool update(const scene::Pose& pose) override {

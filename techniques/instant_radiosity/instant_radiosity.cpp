@@ -44,36 +44,18 @@ class InstantRadiosity : public Technique {
  private:
   frame::TextureHandle addPasses(frame::FrameGraph& graph, const TechniqueInputs& inputs,
                                  const TermRequest& request) override {
-    if (request.lights.empty()) {
-      graph.leaveOut("indirect light", info.name, "the scene has no light");
-      return request.target;
-    }
+    const auto lights = indirect::virtualLightsOf(graph, inputs, request, info.name);
+    if (!lights) return request.target;
     const ParameterValues& p = inputs.parameters;
-    const indirect::VirtualLights lights = inputs.service<indirect::VirtualLightService>().request(
-        request.lights, indirect::virtualLightDesc(p));
     const int size = p.integer("map_size");
     const int64_t fitting = (int64_t{p.integer("memory")} << 20) / indirect::paraboloidBytes(size);
     const int batch = static_cast<int>(std::clamp<int64_t>(
-        fitting, 1, std::min(lights.count, indirect::paraboloidBatch(inputs.gpuScene.device(), size))));
-    indirect::LightMaps& maps = maps_.get(request.lights, [&] {
-      return indirect::LightMaps{
-          .views = indirect::addLightViews(graph, inputs, lights,
-                                           {.size = size, .batch = batch, .technique = info.name})};
-    });
-    indirect::Gather gather(graph, inputs, info.name, lights, indirect::gatherSettings(p));
-    for (int first = 0; first < lights.count; first += batch) {
-      const int count = std::min(batch, lights.count - first);
-      const indirect::ParaboloidDesc desc{.count = count,
-                                          .first = first,
-                                          .size = size,
-                                          .technique = info.name,
-                                          .cacheable = count == lights.count};
-      const indirect::ParaboloidMaps drawn = maps.get(desc.cacheable, [&] {
-        return passes_.emplace_back().add(graph, inputs.gpuScene, inputs.handles, maps.views, desc);
-      });
-      gather.shade(indirect::lightMapShadePass(inputs, drawn, p.real("bias")));
-    }
-    return gather.finish(request.target);
+        fitting, 1, std::min(lights->count, indirect::paraboloidBatch(inputs.gpuScene.device(), size))));
+    const auto fill = [&](frame::BufferHandle views, const indirect::ParaboloidDesc& desc) {
+      return passes_.emplace_back().add(graph, inputs.gpuScene, inputs.handles, views, desc);
+    };
+    return indirect::addMappedLight(graph, inputs, request, *lights,
+                                    {.size = size, .batch = batch, .technique = info.name}, maps_, fill);
   }
 
   indirect::MadeForLights<indirect::LightMaps> maps_;

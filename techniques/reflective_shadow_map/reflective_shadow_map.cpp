@@ -18,13 +18,9 @@ constexpr StressCase kStress[] = {
 class ReflectiveShadowMap : public Technique {
   frame::TextureHandle addPasses(frame::FrameGraph& graph, const TechniqueInputs& inputs,
                                  const TermRequest& request) override {
-    if (request.lights.empty()) {
-      graph.leaveOut("indirect light", info.name, "the scene has no light");
-      return request.target;
-    }
-    const indirect::VirtualLights lights = inputs.service<indirect::VirtualLightService>().request(
-        request.lights, indirect::virtualLightDesc(inputs.parameters));
-    indirect::Gather gather(graph, inputs, info.name, lights, indirect::gatherSettings(inputs.parameters));
+    const auto lights = indirect::virtualLightsOf(graph, inputs, request, info.name);
+    if (!lights) return request.target;
+    indirect::Gather gather(graph, inputs, info.name, *lights, indirect::gatherSettings(inputs.parameters));
     gather.shade({.program = {.files = {"techniques/reflective_shadow_map/shade.comp.glsl"}, .defines = {}}});
     return gather.finish(request.target);
   }

@@ -1,12 +1,12 @@
-// The translucent materials of pixels. TEXTURED 1: the albedo of a material may be that of the pixel. NORMALISED 1: its profile is
-// that of normalised diffusion, 0: the dipole's.
+// The translucent materials of pixels. TEXTURED 1: the albedo of a material may be that of the pixel. NORMALISED: see
+// glsl/diffusion/profile.glsl.
 #ifndef LINE_PIXEL_GLSL
 #define LINE_PIXEL_GLSL
 #include "glsl/diffusion/boundary.glsl"
 #include "glsl/surface/gbuffer_input.glsl"
 #include "techniques/separable_subsurface/line_tap.glsl"
 #if TEXTURED
-#include "glsl/diffusion/albedo_reflectance.glsl"
+#include "glsl/diffusion/profile.glsl"
 #include "techniques/separable_subsurface/line_width.glsl"
 #endif
 
@@ -43,10 +43,8 @@ vec3 root_reflectance(LineMaterial m, ivec2 pixel) {
   vec3 reflectance = m.reflectance;
 #if TEXTURED
   if (m.textured != 0u) {
-    reflectance = gbuffer_colour_decode(texelFetch(gbuffer_albedo, pixel, 0).rgb);
-#if !NORMALISED
-    reflectance = dipole_reflectance(reflectance, diffusion_boundary(m.eta, m.entering));
-#endif
+    vec3 albedo = gbuffer_colour_decode(texelFetch(gbuffer_albedo, pixel, 0).rgb);
+    reflectance = profile_reflectance(albedo, diffusion_boundary(m.eta, m.entering));
   }
 #endif
   return sqrt(reflectance);

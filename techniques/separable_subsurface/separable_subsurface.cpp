@@ -5,6 +5,7 @@
 
 #include "core/frame/array_block.h"
 #include "core/gpu_scene/gpu_scene.h"
+#include "core/scene/diffusion_profile.h"
 #include "core/technique/technique.h"
 #include "techniques/separable_subsurface/line_materials.h"
 
@@ -14,15 +15,13 @@ using namespace limn;
 using frame::Access;
 using separable_subsurface::LineMaterials;
 
-enum ProfileKind { dipole, normalisedDiffusion };
-constexpr const char* kProfiles[] = {"dipole", "normalised_diffusion"};
 enum Footprint { tangent, facing };
 constexpr const char* kFootprints[] = {"tangent", "facing"};
 enum Missing { centre, mean };
 constexpr const char* kMissing[] = {"centre", "mean"};
 
 constexpr Parameter kParameters[] = {
-    choice("profile", dipole, kProfiles, "How far light goes below a surface"),
+    scene::profileParameter(),
     integer("taps", 25, {1, 255}, "taps",
             "Along a row and along a column; even numbers count as the next odd one")
         .quality()
@@ -110,7 +109,7 @@ class Passes {
     const GBuffer& gbuffer = inputs_.gbuffer;
     std::map<std::string, std::string> defines{
         {"TEXTURED", kernels_.textured ? "1" : "0"},
-        {"NORMALISED", inputs_.parameters.choice("profile") == normalisedDiffusion ? "1" : "0"}};
+        {"NORMALISED", scene::normalisedProfile(inputs_.parameters) ? "1" : "0"}};
     const Access materials = frame::arrayBlock<glsl::LineMaterial>(
         inputs_.gpuScene.device().limits(), kernels_.count, "LINE_MATERIAL_COUNT", defines);
     pass.read(inputs_.handles.frame, Access::uniformBuffer, "FrameBlock", "camera")
@@ -183,13 +182,9 @@ frame::TextureHandle SeparableSubsurface::addPasses(frame::FrameGraph& graph, co
   const ParameterValues& p = inputs.parameters;
   const LineMaterials kernels =
       separable_subsurface::lineMaterials(inputs.scene, inputs.pose,
-                                          {.normalised = p.choice("profile") == normalisedDiffusion,
+                                          {.normalised = scene::normalisedProfile(p),
                                            .taps = p.integer("taps"),
                                            .depthLimit = p.real("depth_limit")});
-  if (kernels.materials.empty()) {
-    graph.leaveOut("light below surfaces", info.name, "no surface is translucent");
-    return request.target;
-  }
   gpu::Device& device = inputs.gpuScene.device();
   buffers_.emplace(gpu::Buffer::of<glsl::LineMaterial>(device, "translucent materials", kernels.materials),
                    gpu::Buffer::of<glsl::LineTap>(device, "taps of materials", kernels.taps),

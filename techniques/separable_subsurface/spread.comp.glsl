@@ -2,6 +2,7 @@
 // plane that touches the surface; 0: on one that faces the camera. FOLLOW 1: those that are not near it in depth count as
 // missing, as those of other instances and outside the picture do. CENTRE 1: in place of what is missing stands the light of
 // the pixel itself; 0: the mean of what is there.
+#include "glsl/diffusion/pixel_exit.glsl"
 #include "techniques/separable_subsurface/line_footprint.glsl"
 #include "techniques/separable_subsurface/line_pixel.glsl"
 
@@ -89,9 +90,8 @@ void main() {
 #if ROWS
   imageStore(spread, pixel, vec4(light, p.depth));
 #else
-  float cosine = max(-dot(pixel_normal(pixel), normalize(pixel_ray(pixel))), 0.0);
   DiffusionBoundary boundary = diffusion_boundary(material.eta, material.entering);
-  vec3 leaving = light * root_reflectance(material, pixel) * (pi * diffusion_exit(boundary, cosine));
+  vec3 leaving = light * root_reflectance(material, pixel) * pixel_exit(pixel, boundary);
   imageStore(radiance, pixel, imageLoad(radiance, pixel) + vec4(leaving, 0.0));
 #endif
 }

@@ -119,11 +119,11 @@ Bodies findBodies(const scene::Scene& scene, const scene::Pose& pose, const Draw
     if (body.textured != 0) continue;
     body.first_point = static_cast<uint32_t>(result.points.size());
     const glsl::DiffusionBoundary boundary = glsl::diffusion_boundary(body.eta, body.entering);
-    if (drawing.profile == Profile::dipole)
-      addPoints(body, glsl::dipole_colours(body.extinction, body.absorption, boundary), drawing,
+    if (drawing.normalised)
+      addPoints(body, glsl::normalised_colours(body.extinction, body.absorption, boundary), drawing,
                 result.points);
     else
-      addPoints(body, glsl::normalised_colours(body.extinction, body.absorption, boundary), drawing,
+      addPoints(body, glsl::dipole_colours(body.extinction, body.absorption, boundary), drawing,
                 result.points);
   }
   if (textures) forDraws(drawing, [&](const glsl::PointDraw& draw) { result.draws.push_back(draw); });

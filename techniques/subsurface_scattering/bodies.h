@@ -9,11 +9,9 @@
 
 namespace limn::subsurface_scattering {
 
-enum class Profile { dipole, normalisedDiffusion };
-
 /// Says how points are drawn.
 struct Drawing {
-  Profile profile = Profile::dipole;
+  bool normalised = false;  ///< normalised diffusion in place of the dipole
   int samples = 16;         ///< of each pixel
   int block = 1;            ///< side of the pattern of pixels whose points differ
   float uniformShare = 0;   ///< of the points: drawn from a disc; rounded to whole points

@@ -1,5 +1,6 @@
 // Adds the light that leaves bodies: F_t(n.v) B / (pi (1 - F_de)), with B from the mean of the light that enters.
 // BLUR 1: what is gathered is averaged over the pattern of interleaved pixels along rows, and is so along columns here.
+#include "glsl/diffusion/pixel_exit.glsl"
 #include "techniques/subsurface_scattering/pixel_body.glsl"
 
 layout(local_size_x = 8, local_size_y = 8) in;
@@ -25,12 +26,11 @@ void main() {
 #endif
   DiffusionBody body = bodies[body_index];
   DiffusionBoundary boundary = diffusion_boundary(body.eta, body.entering);
-  Colours colours = matter_colours(body.extinction, pixel_absorption(body, boundary, pixel), boundary);
+  ProfileColours colours = profile_colours(body.extinction, pixel_absorption(body, boundary, pixel), boundary);
   vec3 factor = colours.reflectance;
 #if TEXTURED && ROOT
   if (body.textured != 0u) factor = sqrt(factor);
 #endif
-  float cosine = -dot(pixel_normal(pixel), normalize(pixel_ray(pixel)));
-  vec3 light = pi * diffusion_exit(boundary, cosine) * factor * mean;
+  vec3 light = pixel_exit(pixel, boundary) * factor * mean;
   imageStore(radiance, pixel, imageLoad(radiance, pixel) + vec4(light, 0.0));
 }

@@ -65,10 +65,10 @@ DrawingPlane drawing_plane(vec3 place, vec3 normal, vec3 own_plane, float unit, 
 // weighs much however it was met.
 #define WIDEST (TEXTURED && ROOT)
 struct Drawing {
-  Colours colours;
+  ProfileColours colours;
   PointSource source;
 #if WIDEST
-  Colours widest;
+  ProfileColours widest;
   PointSource widest_source;
 #endif
 };
@@ -133,7 +133,7 @@ void main() {
   uint sub_buffer = uint(pattern_set(pixel, side, block));
   bool asked = own.w != no_instance && body_index != no_body && (body.textured != 0u) == (TEXTURED != 0);
   if (asked) {
-    Colours colours = matter_colours(body.extinction, absorption, boundary);
+    ProfileColours colours = profile_colours(body.extinction, absorption, boundary);
     Drawing from;
     from.colours = colours;
     from.source = PointSource(body.channels, body.uniform_share, body.uniform_radius);
@@ -141,7 +141,7 @@ void main() {
     from.source.channels = diffusion_drawn_channels(reach);
 #endif
 #if WIDEST
-    from.widest = matter_colours(body.extinction, body.absorption, boundary);
+    from.widest = profile_colours(body.extinction, body.absorption, boundary);
     from.widest_source = PointSource(body.channels, body.uniform_share, body.uniform_radius);
 #endif
     float per_metre = 1.0 / body.unit;
@@ -201,7 +201,7 @@ void main() {
 #endif
       vec3 weight = densities * inverse_density;
 #if TEXTURED && ROOT
-      Colours there = matter_colours(body.extinction, pixel_absorption(body, boundary, tap), boundary);
+      ProfileColours there = profile_colours(body.extinction, pixel_absorption(body, boundary, tap), boundary);
       vec3 shared_weight = sqrt(densities * there.reflectance * diffusion_density(there, r)) * inverse_density;
 #else
       vec3 shared_weight = weight;

@@ -27,14 +27,14 @@ LIMN_FN int pattern_set(ivec2 pixel, int side, int block) {
   return (pixel.x % side + side * (pixel.y % side)) * (block * block) / (side * side);
 }
 
-// How much of the mean each channel has, 0 to 1: none where its light gets less far than least_patterned_reach, all of it from twice
-// as far on.
+// How much of the mean each channel has, 0 to 1: none where its light gets less far than least_patterned_reach, all of it from
+// twice as far on.
 LIMN_FN vec3 pattern_shares(vec3 reach) { return clamp(reach / least_patterned_reach - 1.0f, vec3(0.0f), vec3(1.0f)); }
 
 // In the mean, of a pixel `t` away along a row or column, on either side, and of the pixel itself at 0. Those of all pixels sum up
-// to 1, and those of each place of the pattern to 1 / side. With an even `side` the pixels at both ends share a place. A narrow mean
-// weighs two pixels more, and takes that from others at the same places of the pattern: of the variance of 1.5 pixels squared that
-// it has with a side of 4, 0.5 is left.
+// to 1, and those of each place of the pattern to 1 / side. With an even `side` the pixels at both ends share a place. A narrow
+// mean weighs two pixels more, and takes that from others at the same places of the pattern: of the variance of 1.5 pixels squared
+// that it has with a side of 4, 0.5 is left.
 LIMN_FN float pattern_weight(int side, bool narrow, int t) {
   float weight = t <= side / 2 ? (2 * t == side ? 0.5f : 1.0f) / float(side) : 0.0f;
   if (!narrow) return weight;

@@ -1,17 +1,10 @@
 // The matter below a pixel.
-// PROFILE 0: dipole, 1: normalised diffusion. TEXTURED 1: the base colour of pixels may say what absorbs.
+// NORMALISED: see glsl/diffusion/profile.glsl. TEXTURED 1: the base colour of pixels may say what absorbs.
 #ifndef PIXEL_BODY_GLSL
 #define PIXEL_BODY_GLSL
+#include "glsl/diffusion/profile.glsl"
 #include "glsl/surface/gbuffer_input.glsl"
 #include "techniques/subsurface_scattering/diffusion_body.glsl"
-
-#if PROFILE == 0
-#define Colours DipoleColours
-#define matter_colours dipole_colours
-#else
-#define Colours NormalisedColours
-#define matter_colours normalised_colours
-#endif
 
 layout(std430) readonly buffer Bodies { DiffusionBody bodies[]; };
 layout(std430) readonly buffer BodiesOfInstances { uint bodies_of_instances[]; };

@@ -10,10 +10,10 @@
 #include "core/gpu_scene/gpu_medium.h"
 #include "core/gpu_scene/gpu_scene.h"
 #include "core/gpu_scene/light_textures.h"
+#include "core/scene/diffusion_profile.h"
 #include "core/shadow/shadow_map.h"
 #include "core/technique/technique.h"
 #include "glsl/diffusion/entry_sums.glsl"
-#include "glsl/numeric/sampling.glsl"
 #include "techniques/subsurface_scattering/bodies.h"
 
 namespace {
@@ -24,7 +24,6 @@ using frame::BufferHandle;
 using frame::TextureHandle;
 using subsurface_scattering::Bodies;
 
-constexpr const char* kProfiles[] = {"dipole", "normalised_diffusion"};
 constexpr const char* kNormalise[] = {"none", "count", "weights"};
 static_assert(glsl::entry_normalise_none == 0 && glsl::entry_normalise_count == 1 &&
               glsl::entry_normalise_weights == 2);
@@ -32,10 +31,7 @@ constexpr const char* kPlanes[] = {"tangent", "both"};
 constexpr const char* kMixing[] = {"root", "own"};
 
 constexpr Parameter kParameters[] = {
-    choice(
-        "profile", 0, kProfiles,
-        "Light over the distance from where it entered: the dipole of sources, or two exponentials with the "
-        "reflectance of a random walk"),
+    scene::profileParameter(),
     integer("samples", 16, {1, 1024}, "points", "Drawn around each pixel").quality().logScale(),
     integer("block", 4, {1, 16}, "pixels",
             "Side of the pattern of pixels that draw different points, over which the light is averaged"),
@@ -152,8 +148,7 @@ class SubsurfaceScattering : public Technique {
 };
 
 subsurface_scattering::Drawing drawingFor(const ParameterValues& p) {
-  using subsurface_scattering::Profile;
-  return {.profile = p.choice("profile") == 0 ? Profile::dipole : Profile::normalisedDiffusion,
+  return {.normalised = scene::normalisedProfile(p),
           .samples = p.integer("samples"),
           .block = p.integer("block"),
           .uniformShare = p.real("uniform_share"),
@@ -258,10 +253,10 @@ class Passes {
       graph_.leaveOut(name, SubsurfaceScattering::info.name, "the scene has no light");
       return;
     }
-    shadow::ShadowMapDesc desc{
-        .size = inputs_.parameters.integer("light_view_size"), .reflective = true, .instances = true};
-    for (int i = 0; points > 1 && i < points; ++i)
-      desc.samples.push_back(glsl::r2_sequence(static_cast<uint32_t>(i) + 1));
+    const shadow::ShadowMapDesc desc{.size = inputs_.parameters.integer("light_view_size"),
+                                     .samples = shadow::pointsOnLights(points),
+                                     .reflective = true,
+                                     .instances = true};
     lightViews_ = inputs_.service<shadow::ShadowMapService>().request(lights, desc);
     lightCount_ = static_cast<int>(lights.size());
   }
@@ -292,7 +287,7 @@ class Passes {
         .read(buffers_.ofInstances, Access::storageLoad, "BodiesOfInstances", "in which instances")
         .read(planes_, Access::sampled, "planes", "surfaces and their instances");
     if (textured) pass.read(inputs_.gbuffer.albedo, Access::sampled, kGBufferNames.albedo, "what absorbs");
-    return {{"PROFILE", std::to_string(inputs_.parameters.choice("profile"))},
+    return {{"NORMALISED", scene::normalisedProfile(inputs_.parameters) ? "1" : "0"},
             {"TEXTURED", textured ? "1" : "0"},
             {"ROOT", inputs_.parameters.choice("mixing") == 0 ? "1" : "0"}};
   }
@@ -344,10 +339,6 @@ TextureHandle SubsurfaceScattering::addPasses(frame::FrameGraph& graph, const Te
   gpu::Device& device = inputs.gpuScene.device();
   bodies_ = subsurface_scattering::findBodies(inputs.scene, inputs.pose, drawingFor(inputs.parameters),
                                               device.limits().maxStorageBlockBytes);
-  if (bodies_.bodies.empty()) {
-    graph.leaveOut("gather", info.name, "no surface is translucent");
-    return request.target;
-  }
   buffers_.emplace(gpu::Buffer::of<glsl::DiffusionBody>(device, "bodies", bodies_.bodies),
                    gpu::Buffer::of<uint32_t>(device, "bodies of instances", bodies_.ofInstances),
                    gpu::Buffer::of<glsl::DrawnPoint>(device, "points of bodies", bodies_.points),

@@ -26,16 +26,19 @@ constexpr double kShrinks = 1.84;
 constexpr int64_t kMostBytes = int64_t{2} << 30;
 
 /// Returns the vertices of a draw in the world, m.
-std::vector<glm::vec3> placesOf(const scene::Primitive& primitive, const scene::Pose& pose,
-                                const scene::DrawInstance& draw) {
-  std::vector<glm::vec3> places = primitive.positions;
-  if (draw.deformed != scene::kNone) {
-    std::vector<glm::vec3> normals;
-    std::vector<glm::vec4> tangents;
-    scene::deform(primitive, pose.deformed[static_cast<size_t>(draw.deformed)], places, normals, tangents);
-  }
+std::vector<glm::vec3> placesOf(const LaidOutDraw& laid, const scene::DrawInstance& draw) {
+  const bool deformed = draw.deformed != scene::kNone;
+  std::vector<glm::vec3> places = deformed ? laid.deformed.positions() : laid.primitive->positions;
   for (glm::vec3& p : places) p = glm::vec3(draw.objectToWorld * glm::vec4(p, 1));
   return places;
+}
+
+/// Moves the vertices of a draw to a pose, and returns the area of all its triangles before its matrix; 0 of
+/// those that nothing deforms.
+double deformedArea(const scene::Pose& pose, const scene::DrawInstance& draw, LaidOutDraw& laid) {
+  if (draw.deformed == scene::kNone) return 0;
+  laid.deformed.move(*laid.primitive, pose.deformed[static_cast<size_t>(draw.deformed)]);
+  return laid.deformed.area();
 }
 
 float largestExtent(std::span<const glm::vec3> places) {
@@ -84,18 +87,20 @@ std::vector<LaidOutDraw> translucentDraws(const scene::Scene& scene, const scene
     laid.primitive = &scene::primitiveOf(scene, pose, instance);
     laid.mirrored = scene::mirrored(instance);
     laid.areas = scene::areaFactors(instance.objectToWorld);
+    laid.area = deformedArea(pose, instance, laid);
     result.push_back(std::move(laid));
   }
   return result;
 }
 
-bool fits(const scene::Pose& pose, std::span<const LaidOutDraw> draws) {
-  return std::ranges::all_of(draws, [&](const LaidOutDraw& laid) {
+bool fits(const scene::Pose& pose, std::span<LaidOutDraw> draws) {
+  return std::ranges::all_of(draws, [&](LaidOutDraw& laid) {
     const scene::DrawInstance& instance = pose.instances[laid.draw];
     const bool same =
         !laid.source || pose.dynamic[static_cast<size_t>(instance.mesh)].primitive == laid.source;
     return same && scene::mirrored(instance) == laid.mirrored &&
-           scene::areasAlike(scene::areaFactors(instance.objectToWorld), laid.areas);
+           scene::areasAlike(scene::areaFactors(instance.objectToWorld), laid.areas) &&
+           scene::areasAlike(glm::dvec3(deformedArea(pose, instance, laid)), glm::dvec3(laid.area));
   });
 }
 
@@ -129,7 +134,7 @@ BodyTextures bodyTextures(const scene::Pose& pose, std::span<const LaidOutDraw> 
   for (const LaidOutDraw& laid : draws) {
     const scene::DrawInstance& instance = pose.instances[laid.draw];
     const scene::Primitive& primitive = *laid.primitive;
-    const std::vector<glm::vec3> places = placesOf(primitive, pose, instance);
+    const std::vector<glm::vec3> places = placesOf(laid, instance);
     const double least = static_cast<double>(kLeastMargin * largestExtent(places)) / texels;
     auto made =
         scene::makeCharts(places, primitive.indices, std::max(matter.reach[laid.kind], least),

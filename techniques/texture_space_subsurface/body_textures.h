@@ -7,6 +7,7 @@
 #include <span>
 #include <vector>
 
+#include "core/scene/deformed_surface.h"
 #include "core/scene/diffusion_profile.h"
 #include "core/scene/scene.h"
 #include "techniques/texture_space_subsurface/body_texture.glsl"
@@ -43,7 +44,9 @@ struct LaidOutDraw {
       source;  ///< of dynamic geometry, whose place is then not used again
   const scene::Primitive* primitive;
   bool mirrored;
-  glm::dvec3 areas;  ///< scene::areaFactors() of its matrix
+  glm::dvec3 areas;                 ///< scene::areaFactors() of its matrix
+  double area;                      ///< of all triangles that skins or morphs move, before its matrix; else 0
+  scene::DeformedSurface deformed;  ///< its vertices in the pose that was asked for last, likewise
 };
 
 /// Holds what is known of the translucent materials that are drawn.
@@ -63,8 +66,9 @@ std::vector<LaidOutDraw> translucentDraws(const scene::Scene& scene, const scene
                                           const BodyMatter& matter);
 
 /// Returns whether the layouts of draws still serve at another pose with as many instances: none has other
-/// triangles, is mirrored or has areas that changed by more than half.
-bool fits(const scene::Pose& pose, std::span<const LaidOutDraw> draws);
+/// triangles, is mirrored or has areas that its matrix, or a whole area that skins or morphs, changed by more
+/// than half. Moves their vertices to that pose.
+bool fits(const scene::Pose& pose, std::span<LaidOutDraw> draws);
 
 /// Returns the first of a kind's `count` Gaussians that is spread in a texel of any body: half as wide as it
 /// or wider. `count`: none.
@@ -73,8 +77,8 @@ int firstSpread(const BodyTextures& textures, const BodyMatter& matter, int coun
 /// Throws UsageError for more bodies than textures of `texels` x `texels` may have layers.
 void checkLayers(const BodyTextures& textures, int texels, const TextureLimits& limits);
 
-/// Returns the layouts of draws in textures of `texels` x `texels`, with corners that take `cornerBytes` at
-/// most.
+/// Returns the layouts of draws, which were made for that pose, in textures of `texels` x `texels`, with
+/// corners that take `cornerBytes` at most.
 BodyTextures bodyTextures(const scene::Pose& pose, std::span<const LaidOutDraw> draws,
                           const BodyMatter& matter, int texels, int64_t cornerBytes);
 

@@ -1,9 +1,8 @@
 // Adds the light that leaves bodies: F_t(n.v) B / (pi (1 - F_de)), with B between the texels around a pixel. Light of Gaussians
 // that are narrower than texels is that of the pixel, and so is all light of bodies without charts. CHARTS 1: there are some with
-// charts. TEXTURED 1: the albedo of a material may be that of the pixel. NORMALISED 1: what it reflects is what normalised
-// diffusion does, 0: what the dipole does.
-#include "glsl/diffusion/albedo_reflectance.glsl"
-#include "glsl/surface/gbuffer_input.glsl"
+// charts. TEXTURED 1: the albedo of a material may be that of the pixel. NORMALISED: see glsl/diffusion/profile.glsl.
+#include "glsl/diffusion/pixel_exit.glsl"
+#include "glsl/diffusion/profile.glsl"
 #include "techniques/texture_space_subsurface/body_texture.glsl"
 
 layout(local_size_x = 8, local_size_y = 8) in;
@@ -24,7 +23,7 @@ vec3 pixel_reflectance(TexturedKind kind, DiffusionBoundary boundary, ivec2 pixe
 #if TEXTURED
   if (kind.textured != 0u) {
     vec3 albedo = gbuffer_colour_decode(texelFetch(gbuffer_albedo, pixel, 0).rgb);
-    return NORMALISED != 0 ? albedo : dipole_reflectance(albedo, boundary);
+    return profile_reflectance(albedo, boundary);
   }
 #endif
   return kind.reflectance;
@@ -76,8 +75,7 @@ void main() {
   vec4 at = texelFetch(found, pixel, 0);
   if (at.w != 0.0) light = light_around(at, index, light);
 #endif
-  float cosine = max(-dot(pixel_normal(pixel), normalize(pixel_ray(pixel))), 0.0);
   DiffusionBoundary boundary = diffusion_boundary(kind.eta, kind.entering);
-  vec3 leaving_here = pixel_reflectance(kind, boundary, pixel) * light * (pi * diffusion_exit(boundary, cosine));
+  vec3 leaving_here = pixel_reflectance(kind, boundary, pixel) * light * pixel_exit(pixel, boundary);
   imageStore(radiance, pixel, imageLoad(radiance, pixel) + vec4(leaving_here, 0.0));
 }

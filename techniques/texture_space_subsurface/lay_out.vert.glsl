@@ -20,7 +20,7 @@ void main() {
   vec3 f = corner_position(body, c) - start;
   vec3 across = cross(e, f);
   float square = dot(across, across);
-  bool mirrored = (body.flags & 2u) != 0u;
+  bool mirrored = (body.flags & instance_mirrored) != 0u;
   normal_ws = square > 0.0 ? across * ((mirrored ? -1.0 : 1.0) * inversesqrt(square)) : vec3(0.0, 1.0, 0.0);
   // How far the surface goes for a texel along u and v: the inverse of (b - a, c - a) in texels, times e and f.
   vec2 p = b.place - a.place;

@@ -6,6 +6,7 @@
 #include <utility>
 
 #include "core/gpu_scene/gpu_scene.h"
+#include "core/scene/diffusion_profile.h"
 #include "core/shadow/entering_light.h"
 #include "core/shadow/visibility_pass.h"
 #include "core/technique/technique.h"
@@ -19,10 +20,8 @@ using frame::TextureHandle;
 using texture_space::BodyMatter;
 using texture_space::BodyTextures;
 
-enum ProfileKind { dipole, normalisedDiffusion };
-constexpr const char* kProfiles[] = {"dipole", "normalised_diffusion"};
 constexpr Parameter kParameters[] = {
-    choice("profile", dipole, kProfiles, "How far light goes below a surface"),
+    scene::profileParameter(),
     integer("texels", 256, {16, 4096}, "texels", "Along each side of a body's texture").quality().logScale(),
     integer("gaussians", 6, {1, 12}, "Gaussians", "Whose sum is the profile; each takes two passes")
         .quality(),
@@ -259,7 +258,7 @@ class Passes {
         .files = {file("exit.comp")},
         .defines = {{"TEXTURED", textured_ ? "1" : "0"},
                     {"CHARTS", charts ? "1" : "0"},
-                    {"NORMALISED", inputs_.parameters.choice("profile") == normalisedDiffusion ? "1" : "0"},
+                    {"NORMALISED", scene::normalisedProfile(inputs_.parameters) ? "1" : "0"},
                     {"GAUSSIANS", std::to_string(gaussians())}}};
     pass.read(inputs_.handles.frame, Access::uniformBuffer, "FrameBlock", "camera")
         .read(gbuffer.instance, Access::sampled, kGBufferNames.instance, "draws of pixels")
@@ -300,12 +299,8 @@ TextureHandle TextureSpaceSubsurface::addPasses(frame::FrameGraph& graph, const 
   const ParameterValues& p = inputs.parameters;
   drawCount_ = inputs.pose.instances.size();
   const int texels = p.integer("texels"), gaussians = p.integer("gaussians");
-  const BodyMatter matter = texture_space::bodyMatter(inputs.scene, inputs.pose,
-                                                      p.choice("profile") == normalisedDiffusion, gaussians);
-  if (matter.kinds.empty()) {
-    graph.leaveOut("light below surfaces", info.name, "no surface is translucent");
-    return request.target;
-  }
+  const BodyMatter matter =
+      texture_space::bodyMatter(inputs.scene, inputs.pose, scene::normalisedProfile(p), gaussians);
   draws_ = texture_space::translucentDraws(inputs.scene, inputs.pose, matter);
   gpu::Device& device = inputs.gpuScene.device();
   const gpu::Limits& limits = device.limits();

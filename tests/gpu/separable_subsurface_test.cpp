@@ -61,18 +61,24 @@ TEST_F(SeparableSubsurfaceTest, AlbedosOfTheBaseColourAreThoseOfCoefficients) {
 }
 
 TEST_F(SeparableSubsurfaceTest, PixelsOfAnotherAlbedoAreWiderOrNarrower) {
-  // Taps are those of a white material, and the albedo is that of vertices. Profiles of normalised diffusion
-  // differ by their widths alone.
+  // Taps are those of the mean of the vertices' albedo and white, which those of a second floor have that is
+  // not seen. Profiles of normalised diffusion differ by their widths alone.
+  const auto withHidden = [](scene::Scene scene) {
+    scene::Node& hidden = scene.nodes.emplace_back();
+    hidden.mesh = test::addMesh(scene, test::floorPrimitive(1, 0));
+    hidden.transform.translation = {0, -1, 0};
+    return scene;
+  };
   const Values values{{"profile", "normalised_diffusion"}};
   scene::Material material = matter(30, 0.2f);
-  const Image wanted = belowShadow(shadowed(material, {1, 0, 0}, 0), values);
+  const Image wanted = belowShadow(withHidden(shadowed(material, {1, 0, 0}, 0)), values);
   const glm::vec4 albedo = material.baseColour;
   material.subsurface->albedoFromBaseColour = true;
   material.subsurface->absorption = vec3(0);
   material.baseColour = glm::vec4(1);
   scene::Scene scene = shadowed(material, {1, 0, 0}, 0);
   scene.meshes[0].primitives[0].colours.assign(scene.meshes[0].primitives[0].positions.size(), albedo);
-  EXPECT_LT(rmsDifference(belowShadow(scene, values), wanted), 0.01);
+  EXPECT_LT(rmsDifference(belowShadow(withHidden(scene), values), wanted), 0.01);
 }
 
 TEST_F(SeparableSubsurfaceTest, OtherBodiesGetNoLight) {

@@ -1,6 +1,8 @@
 // Laws that every technique of light below surfaces keeps: what it may not gain, what it comes to where light
 // goes nowhere, and that neither units nor the strength of lamps matter.
+#include <algorithm>
 #include <cmath>
+#include <glm/gtc/matrix_transform.hpp>
 #include <limits>
 #include <memory>
 #include <string>
@@ -199,6 +201,23 @@ TEST_F(SubsurfaceTechniqueTest, MorphedBodiesScatterAsMeshesDo) {
   }
 }
 
+/// A node that mirrors its mesh's mirror image shows the mesh. Rounding of places may decide on other
+/// clusters and charts, whose errors are some thousandths of the light.
+TEST_F(SubsurfaceTechniqueTest, MirroredMeshesScatterAsMeshesDo) {
+  const scene::Scene mesh = ball(0.1f);
+  scene::Scene mirrored = mesh;
+  scene::Primitive& body = mirrored.meshes[0].primitives[0];
+  for (vec3& p : body.positions) p.x = -p.x;
+  for (vec3& n : body.normals) n.x = -n.x;
+  for (size_t t = 0; t < body.indices.size(); t += 3) std::swap(body.indices[t + 1], body.indices[t + 2]);
+  mirrored.nodes[0].matrix = glm::scale(glm::mat4(1), vec3(-1, 1, 1));
+  for (const render::TechniqueUse& use : uses()) {
+    SCOPED_TRACE(use.plugin->info->name);
+    const Image expected = drawn(mesh, {use});
+    EXPECT_LT(rmse(drawn(mirrored, {use}), expected), 0.03 * mean(expected));
+  }
+}
+
 /// Bodies that appear, grow or are mirrored look as they do in a renderer that never saw them otherwise.
 TEST_F(SubsurfaceTechniqueTest, BodiesThatGrewAreThoseOfAFreshStart) {
   scene::Scene scene = ball(0.1f);
@@ -226,6 +245,35 @@ TEST_F(SubsurfaceTechniqueTest, BodiesThatGrewAreThoseOfAFreshStart) {
       fresh.configure(s);
       EXPECT_EQ(at(grown, time), at(fresh, time)) << time;
     }
+  }
+}
+
+/// So do bodies that morph targets unfold from a single place.
+TEST_F(SubsurfaceTechniqueTest, BodiesThatUnfoldedAreThoseOfAFreshStart) {
+  scene::Scene scene = ball(0.1f);
+  scene::Primitive& body = scene.meshes[0].primitives[0];
+  scene::MorphTarget& target = body.morphTargets.emplace_back();
+  target.positions = body.positions;
+  target.deltaBounds = body.bounds;
+  for (vec3& p : body.positions) p = vec3(0);
+  scene.meshes[0].morphWeights = {0};
+  scene.nodes[0].morphWeights = {0};
+  scene::Animation& animation = scene.animations.emplace_back();
+  animation.duration = 2;
+  animation.channels.push_back({scene::AnimationChannel::Path::weights,
+                                scene::AnimationChannel::Interpolation::linear,
+                                0,
+                                {0, 1},
+                                {0, 1}});
+  for (const render::TechniqueUse& use : uses()) {
+    SCOPED_TRACE(use.plugin->info->name);
+    const render::Settings s = settings(kPictureSide, kPictureSide, Term::subsurface, {use});
+    render::Renderer unfolded(device(), scene), fresh(device(), scene);
+    unfolded.configure(s);
+    fresh.configure(s);
+    const Image before = pictureAt(unfolded, 0), after = pictureAt(unfolded, 1), wanted = pictureAt(fresh, 1);
+    EXPECT_GT(rmse(before, wanted), 0.1 * mean(wanted));
+    EXPECT_TRUE(std::ranges::equal(after.data(), wanted.data()));
   }
 }
 

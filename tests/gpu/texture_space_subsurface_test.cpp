@@ -61,6 +61,20 @@ TEST_F(TextureSpaceSubsurfaceTest, AlbedosOfTheBaseColourAreThoseOfCoefficients)
   }
 }
 
+// Gaussians of the white material that is left without the vertices' colours would be several times as wide.
+TEST_F(TextureSpaceSubsurfaceTest, AlbedosOfVerticesAreThoseOfCoefficients) {
+  scene::Material material = matter(30, 0.2f);
+  const Image wanted = belowShadow(shadowed(material, {1, 0, 0}, 0));
+  const glm::vec4 albedo = material.baseColour;
+  material.subsurface->albedoFromBaseColour = true;
+  material.subsurface->absorption = vec3(0);
+  material.baseColour = glm::vec4(1);
+  scene::Scene scene = shadowed(material, {1, 0, 0}, 0);
+  scene::Primitive& floor = scene.meshes[0].primitives[0];
+  floor.colours.assign(floor.positions.size(), albedo);
+  EXPECT_LT(rmsDifference(belowShadow(scene), wanted), 0.01);
+}
+
 TEST_F(TextureSpaceSubsurfaceTest, OtherBodiesGetNoLight) {
   // The shadow reaches a little further than the one of two bodies.
   const scene::Scene scene = shadowed(matter(30, 0.04f), {1, 0, 0}, 0.05f);

@@ -4,6 +4,7 @@
 #include <gtest/gtest.h>
 
 #include "core/image/byte_values.h"
+#include "core/scene/subsurface.h"
 #include "tests/support/test_scenes.h"
 
 namespace limn::scene {
@@ -35,6 +36,29 @@ TEST(TranslucentKinds, AreThoseThatAreDrawnEachOnce) {
   ASSERT_EQ(found.kinds.size(), 2u);
   EXPECT_EQ(found.kinds[1].extinction, glm::vec3(30));
   EXPECT_EQ(found.ofMaterials, (std::vector<uint32_t>{~0u, 0, ~0u, 0, 1}));
+}
+
+/// Vertex colours are factors on the albedo, and materials that they tell apart are of two kinds.
+TEST(TranslucentKinds, HaveTheMeanColourOfTheirVertices) {
+  Scene scene;
+  Material material = translucent(10);
+  material.subsurface->albedoFromBaseColour = true;
+  material.baseColour = glm::vec4(0.8f, 0.5f, 1, 1);
+  for (int i = 0; i < 3; ++i) test::addMaterial(scene, material);
+  Pose pose;
+  for (const int index : {0, 1, 1, 2}) {
+    Primitive plane = test::floorPrimitive(1, index);
+    if (index == 1 && scene.meshes.size() == 1) plane.colours.assign(4, glm::vec4(0.5f, 0, 1, 0));
+    test::addInstance(scene, pose, test::addMesh(scene, plane));
+  }
+  const TranslucentKinds found = translucentKinds(scene, pose);
+  ASSERT_EQ(found.kinds.size(), 2u);
+  EXPECT_EQ(found.ofMaterials, (std::vector<uint32_t>{0, 1, 0}));
+  EXPECT_EQ(found.kinds[0].albedo, glm::vec3(0.8f, 0.5f, 1));
+  EXPECT_EQ(found.kinds[1].albedo, glm::vec3(0.75f * 0.8f, 0.5f * 0.5f, 1))
+      << "half of the vertices are white";
+  for (const TranslucentKind& kind : found.kinds)
+    EXPECT_EQ(kind.absorption, subsurfaceAbsorption(kind.albedo, material.ior));
 }
 
 TEST(BaseAlbedo, IsTheMeanOrTheLargestOfItsTexture) {

@@ -19,14 +19,14 @@ std::vector<vec4> entering_light;
 }  // namespace
 }  // namespace limn::glsl
 
-#define NORMALISED_DIFFUSION 0
+#define NORMALISED 0
 #include "techniques/hierarchical_subsurface/tree_walk.glsl"
 
 namespace limn::hierarchical_subsurface {
 namespace {
 
+using glsl::ProfileColours;
 using glsl::ScatterBody;
-using glsl::ScatterMatter;
 
 radiosity::TriangleMesh grid(int side, const std::function<glm::vec3(glm::vec2)>& place,
                              const std::function<glm::vec3(glm::vec2)>& normal) {
@@ -134,7 +134,7 @@ class HierarchicalSubsurface : public ::testing::Test {
   }
 
   /// All points of the first body, one by one.
-  glm::vec3 directSum(const glm::vec3& x, const ScatterMatter& matter) const {
+  glm::vec3 directSum(const glm::vec3& x, const ProfileColours& matter) const {
     glm::dvec3 sum(0);
     for (uint32_t i = 0; i < tree_.leafCount(); ++i) {
       const glsl::ScatterNode& n = glsl::nodes[i];
@@ -145,7 +145,7 @@ class HierarchicalSubsurface : public ::testing::Test {
     return glm::vec3(sum);
   }
 
-  glm::vec3 walk(size_t body, const glm::vec3& x, const ScatterMatter& matter, float tolerance) const {
+  glm::vec3 walk(size_t body, const glm::vec3& x, const ProfileColours& matter, float tolerance) const {
     return glsl::light_of_points(tree_.first(body), x, matter, softening_[body], tolerance);
   }
 
@@ -167,7 +167,7 @@ ScatterBody bodyOf(const glm::vec3& extinction, const glm::vec3& absorption, flo
           .textured = 0,
           .unused = glm::uvec2(0)};
 }
-ScatterMatter matterOf(const ScatterBody& body) {
+ProfileColours matterOf(const ScatterBody& body) {
   return glsl::scatter_matter(body, glsl::diffusion_boundary(body.eta), glm::vec3(1));
 }
 
@@ -244,7 +244,7 @@ TEST_F(HierarchicalSubsurface, ClustersMeetTheSumOverAllPointsWithinTheTolerance
   light(stripes);
   for (const float extinction : {0.3f, 3.f, 10.f, 40.f})
     for (const float absorption : {0.f, 0.01f, 0.3f}) {
-      const ScatterMatter matter =
+      const ProfileColours matter =
           matterOf(bodyOf(glm::vec3(extinction) * glm::vec3(1, 2, 3), glm::vec3(absorption)));
       for (const float tolerance : {0.01f, 0.1f, 1.f})
         for (int i = 0; i < 40; ++i) {
@@ -267,7 +267,7 @@ TEST_F(HierarchicalSubsurface, UniformLightOnASphereMeetsTheClosedForm) {
   light([](const glm::vec3&) { return glm::vec3(1); });
   for (const float extinction : {0.1f, 1.f, 5.f, 30.f, 200.f, 1e4f}) {
     const ScatterBody body = bodyOf(glm::vec3(extinction), {0, 0.01f, 0.3f});
-    const ScatterMatter matter = matterOf(body);
+    const ProfileColours matter = matterOf(body);
     const glsl::DiffusionBoundary boundary = glsl::diffusion_boundary(body.eta);
     for (const glm::vec3& x :
          {glm::vec3(0, 0, 1), glm::normalize(glm::vec3(1, 2, -3)), glm::vec3(-0.6f, 0.8f, 0)}) {
@@ -287,7 +287,7 @@ TEST_F(HierarchicalSubsurface, UniformLightOnAPlaneLeavesAsTheReflectance) {
   // Without absorption profiles reach far: of 1e3 mean free paths 0.998.
   for (const float extinction : {30.f, 100.f, 300.f, 1e4f, 1e9f}) {
     const ScatterBody body = bodyOf(glm::vec3(extinction), {0.3f, 0.03f, 0.01f});
-    const ScatterMatter matter = matterOf(body);
+    const ProfileColours matter = matterOf(body);
     for (const glm::vec3& x : {glm::vec3(0), glm::vec3(0.013f, -0.006f, 0), glm::vec3(0.1f, 0.11f, 0)}) {
       const glm::vec3 leaving = glsl::scatter_near(matter, softening_[0]) + walk(0, x, matter, 0.1f);
       for (int c = 0; c < 3; ++c) {
@@ -304,7 +304,7 @@ TEST_F(HierarchicalSubsurface, ShortPathsMeetTheLocalLimit) {
   build({square(32)});
   light(stripes);
   const ScatterBody body = bodyOf(glm::vec3(1e5f), {0, 0.01f, 0.3f});
-  const ScatterMatter matter = matterOf(body);
+  const ProfileColours matter = matterOf(body);
   const glm::vec3 far = walk(0, {0.2f, 0.1f, 0}, matter, 0.1f),
                   near = glsl::scatter_near(matter, softening_[0]);
   for (int c = 0; c < 3; ++c) {
@@ -320,7 +320,7 @@ TEST_F(HierarchicalSubsurface, ExtremesAreFiniteAndMakeNoLight) {
   light([](const glm::vec3&) { return glm::vec3(1); });
   for (const float eta : {1.f, 1.3f, 3.f})
     for (const float extinction : {1e-10f, 1e-6f, 1.f, 1e6f, 1e9f, 1e13f}) {
-      const ScatterMatter matter = matterOf(bodyOf(glm::vec3(extinction), {0, 0.5f, 1}, eta));
+      const ProfileColours matter = matterOf(bodyOf(glm::vec3(extinction), {0, 0.5f, 1}, eta));
       for (const float softening : {softening_[0], 1e9f}) {
         const glm::vec3 near = glsl::scatter_near(matter, softening), far = walk(0, {0, 0, 1}, matter, 0.1f),
                         leaving = near + far;
