@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <utility>
 
 #include "glsl/numeric/geometry.glsl"
 
@@ -13,6 +14,10 @@ namespace {
 
 /// Leaves that are worked off together.
 constexpr uint32_t kPart = 64;
+
+/// Parts that are listed at a time, before what there is room for is kept: lists of 256 MiB at most, however
+/// many leaves a scene has.
+constexpr uint32_t kTogether = 256;
 
 /// Directions that find whether a light's bins are all filled: as many as there are bins in a cone of 0.45
 /// radians, with 16 bins a side.
@@ -273,7 +278,7 @@ void BlockerLists::build(const SceneElements& elements, const Links* links,
   triangles_.clear();
   if (leaves == 0) return;
   bound(elements);
-  parts_.resize(parts);
+  parts_.resize(std::min(parts, kTogether));
   hidden_.assign(leaves, 0);
   for (size_t l = 0; l < lights.size(); ++l) {
     const std::span<Range> ranges = std::span(ranges_).subspan(l * leaves, leaves);
@@ -283,36 +288,47 @@ void BlockerLists::build(const SceneElements& elements, const Links* links,
     }
     if (links) findHidden(elements, *links, lights[l]);
     findReceivers(elements, lights[l]);
-    tbb::parallel_for(0u, parts, [&](uint32_t part) {
-      std::vector<uint32_t>& out = parts_[part].triangles;
-      out.clear();
-      for (uint32_t leaf = kPart * part; leaf < std::min(kPart * (part + 1), leaves); ++leaf) {
-        const size_t first = out.size();
-        ranges[leaf] = {};
-        if (!receivers_[leaf].listed) continue;
-        list(elements, lights[l], leaf, parts_[part]);
-        const size_t count = out.size() - first;
-        if (count <= kLongest)
-          ranges[leaf] = {static_cast<uint32_t>(first), static_cast<uint32_t>(count)};
-        else
-          out.resize(first);
-      }
-    });
-    const size_t before = triangles_.size();
-    for (uint32_t part = 0; part < parts; ++part) {
-      const std::vector<uint32_t>& own = parts_[part].triangles;
-      const bool room = triangles_.size() - before + own.size() <= perLight;
-      for (uint32_t leaf = kPart * part; leaf < std::min(kPart * (part + 1), leaves); ++leaf) {
-        if (ranges[leaf].count == kUnlisted) continue;
-        if (ranges[leaf].count == 0)
-          ranges[leaf].first = 0;
-        else if (room)
-          ranges[leaf].first += static_cast<uint32_t>(triangles_.size());
-        else
-          ranges[leaf] = {};
-      }
-      if (room) triangles_.insert(triangles_.end(), own.begin(), own.end());
+    const size_t most = triangles_.size() + perLight;
+    for (uint32_t first = 0; first < parts; first += kTogether)
+      listParts(elements, lights[l], first, std::min(first + kTogether, parts), most, ranges);
+  }
+}
+
+void BlockerLists::listParts(const SceneElements& elements, const LightBounds& light, uint32_t firstPart,
+                             uint32_t endPart, size_t most, std::span<Range> ranges) {
+  const auto leavesOf = [&](uint32_t part) {
+    return std::pair(kPart * part, std::min(kPart * (part + 1), static_cast<uint32_t>(ranges.size())));
+  };
+  tbb::parallel_for(firstPart, endPart, [&](uint32_t part) {
+    std::vector<uint32_t>& out = parts_[part - firstPart].triangles;
+    out.clear();
+    const auto [firstLeaf, endLeaf] = leavesOf(part);
+    for (uint32_t leaf = firstLeaf; leaf < endLeaf; ++leaf) {
+      const size_t first = out.size();
+      ranges[leaf] = {};
+      if (!receivers_[leaf].listed) continue;
+      list(elements, light, leaf, parts_[part - firstPart]);
+      const size_t count = out.size() - first;
+      if (count <= kLongest)
+        ranges[leaf] = {static_cast<uint32_t>(first), static_cast<uint32_t>(count)};
+      else
+        out.resize(first);
     }
+  });
+  for (uint32_t part = firstPart; part < endPart; ++part) {
+    const std::vector<uint32_t>& own = parts_[part - firstPart].triangles;
+    const bool room = triangles_.size() + own.size() <= most;
+    const auto [firstLeaf, endLeaf] = leavesOf(part);
+    for (uint32_t leaf = firstLeaf; leaf < endLeaf; ++leaf) {
+      if (ranges[leaf].count == kUnlisted) continue;
+      if (ranges[leaf].count == 0)
+        ranges[leaf].first = 0;
+      else if (room)
+        ranges[leaf].first += static_cast<uint32_t>(triangles_.size());
+      else
+        ranges[leaf] = {};
+    }
+    if (room) triangles_.insert(triangles_.end(), own.begin(), own.end());
   }
 }
 

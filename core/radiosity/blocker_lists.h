@@ -74,6 +74,9 @@ class LIMN_API BlockerLists {
   void findHidden(const SceneElements& elements, const Links& links, const LightBounds& light);
   void findReceivers(const SceneElements& elements, const LightBounds& light);
   void list(const SceneElements& elements, const LightBounds& light, uint32_t leaf, Part& part) const;
+  /// Lists what some parts of the leaves need, and keeps it while all lists together have `most` triangles.
+  void listParts(const SceneElements& elements, const LightBounds& light, uint32_t firstPart,
+                 uint32_t endPart, size_t most, std::span<Range> ranges);
 
   /// Bounds a triangle by a sphere, and holds its plane.
   struct Triangle {
@@ -94,7 +97,7 @@ class LIMN_API BlockerLists {
   std::vector<unsigned char> hidden_;  ///< whether all bins around the light are filled, of each leaf
   std::vector<Range> ranges_;
   std::vector<uint32_t> triangles_;
-  std::vector<Part> parts_;  ///< of kPart leaves each
+  std::vector<Part> parts_;  ///< of kPart leaves each: those in work
 };
 
 }  // namespace limn::radiosity

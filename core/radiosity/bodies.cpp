@@ -58,6 +58,7 @@ enum : unsigned char {
   kCentreIn = 2,  ///< its centre lies within its own body
   kVertexIn = 4,  ///< as does its vertex, of which nobody asks otherwise
   kWaiting = 8,   ///< for a neighbour's place
+  kNext = 16,     ///< the same, beside one that has left
 };
 
 /// Returns a point above which an element sees what its vertex sees.
@@ -171,25 +172,31 @@ void Bodies::leave(Surfels& surfels) {
         waiting_.push_back(q.surfel);
       }
     }
-  // From the bodies' outlines inwards, a ring of neighbours at a time.
-  do {
+  // From the bodies' outlines inwards, a ring of neighbours at a time: those beside what has left last.
+  ring_ = waiting_;
+  while (!ring_.empty()) {
     moves_.clear();
-    for (const uint32_t i : waiting_) {
+    for (const uint32_t i : ring_) {
       const Surfels::Neighbour* best = nullptr;
-      for (uint32_t k = surfels.firstNeighbour[i]; k < surfels.firstNeighbour[i + 1]; ++k) {
-        const Surfels::Neighbour& n = surfels.neighbours[k];
+      for (const Surfels::Neighbour& n : surfels.neighboursOf(i))
         // On regular meshes weights are equal but for rounding, which must not choose.
-        if (enclosed_[n.surfel] == 0 && (best == nullptr || n.weight > 1.001f * best->weight)) best = &n;
-      }
+        if (enclosed_[n.surfel] == kOutside && (best == nullptr || n.weight > 1.001f * best->weight))
+          best = &n;
       if (best != nullptr) moves_.push_back({best->surfel, i});
     }
+    ring_.clear();
     for (const Move& m : moves_) {
       surfels.positions[m.to] = surfels.positions[m.from];
-      enclosed_[m.to] = 0;
+      enclosed_[m.to] = kOutside;
     }
-    std::erase_if(waiting_, [&](uint32_t i) { return enclosed_[i] == 0; });
-  } while (!moves_.empty());
-  for (const uint32_t i : waiting_) enclosed_[i] = 0;
+    for (const Move& m : moves_)
+      for (const Surfels::Neighbour& n : surfels.neighboursOf(m.to)) {
+        if (enclosed_[n.surfel] != kWaiting) continue;
+        enclosed_[n.surfel] = kNext;
+        ring_.push_back(n.surfel);
+      }
+  }
+  for (const uint32_t i : waiting_) enclosed_[i] = kOutside;
 }
 
 void Bodies::find(const Surfels& surfels, Piece& body) const {

@@ -93,7 +93,7 @@ class LIMN_API Bodies {
   struct Move {
     uint32_t from, to;
   };
-  std::vector<uint32_t> waiting_;
+  std::vector<uint32_t> waiting_, ring_;
   std::vector<Move> moves_;
 };
 

@@ -17,7 +17,7 @@ void addCells(int levelsLeft, uint32_t n, const UnitCell& cell, CornerLevel& lev
     for (uint32_t k = 0; k < 4; ++k) addCells(levelsLeft - 1, n, cell.child(k, middles), level);
     return;
   }
-  // Corners are asked for from inside of their cell, since those of the horizon are in two lists.
+  // The numbers of its corners: those around its centre.
   const glm::vec3 centre = cell.centre();
   const glm::uvec3 corners = glsl::octahedral_grid_place(centre, n).corner;
   const float weight = cellWeight(cell.corners[0], cell.corners[1], cell.corners[2]) / 3;

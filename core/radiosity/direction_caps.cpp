@@ -1,7 +1,6 @@
 #include "core/radiosity/direction_caps.h"
 
 #include <algorithm>
-#include <cmath>
 
 #include "core/radiosity/private/corner_level.h"
 #include "core/radiosity/private/float4.h"
@@ -14,9 +13,10 @@ namespace {
 /// The caps around the cells of the octahedron's first level.
 struct CapPlaces {
   alignas(16) float x[DirectionCaps::kCount], y[DirectionCaps::kCount], z[DirectionCaps::kCount];
-  float cosine = 1, sine = 0;  ///< of the widest cap
+  Cone widest{1};
 
   CapPlaces() {
+    float smallest = 1;
     size_t count = 0;
     for (uint32_t face = 0; face < 8; ++face) {
       const UnitCell whole = UnitCell::face(face);
@@ -26,17 +26,14 @@ struct CapPlaces {
         const UnitCell cell = whole.child(k, middles);
         const glm::vec3 centre = cell.centre();
         x[count] = centre.x, y[count] = centre.y, z[count] = centre.z;
-        cosine = std::min(cosine, cell.cornerCosine(centre));
+        smallest = std::min(smallest, cell.cornerCosine(centre));
       }
     }
-    sine = std::sqrt(1 - cosine * cosine);
+    widest = Cone(smallest);
   }
 
   /// Returns the least cosine between an axis and the centre of a cap that the cone around it meets.
-  float least(float coneCosine) const {
-    const float coneSine = std::sqrt(std::max(1 - coneCosine * coneCosine, 0.f));
-    return coneCosine < -cosine ? -2 : cosine * coneCosine - sine * coneSine;
-  }
+  float least(float coneCosine) const { return Cone::meeting(Cone(coneCosine), widest); }
   Float4 cosines(const glm::vec3& axis, size_t first) const {
     return splat(axis.x) * load(x + first) + splat(axis.y) * load(y + first) +
            splat(axis.z) * load(z + first);

@@ -24,17 +24,14 @@ void addConstant(std::vector<Node>& nodes, uint32_t node, const glm::vec3& value
 struct ConeSearch {
   std::span<const Node> nodes;
   glm::vec3 axis;
-  float cosine, sine;
+  Cone cone;
   bool any = false;
   DirectionBounds found;
 
   /// Whether the cone meets the circle around the cell's corners.
   bool meets(const UnitCell& cell) const {
     const glm::vec3 centre = cell.centre();
-    const float least = cell.cornerCosine(centre);
-    const float reach = std::sqrt(std::max(1 - least * least, 0.f));
-    if (cosine < -least) return true;  // together they are more than half a turn
-    return glm::dot(axis, centre) >= cosine * least - sine * reach;
+    return glm::dot(axis, centre) >= Cone::meeting(cone, Cone(cell.cornerCosine(centre)));
   }
   void visit(uint32_t node, const UnitCell& cell) {
     if (!meets(cell)) return;
@@ -106,7 +103,7 @@ glm::vec3 DirectionalTree::smoothValue(const glm::vec3& w) const {
 DirectionBounds DirectionalTree::bounds(const glm::vec3& axis, float cosine) const {
   if (uniform()) return uniformBounds(axis, cosine);
   if (empty()) return {};
-  ConeSearch search{nodes_, axis, cosine, std::sqrt(std::max(1 - cosine * cosine, 0.f)), false, {}};
+  ConeSearch search{nodes_, axis, Cone(cosine), false, {}};
   for (uint32_t face = 0; face < kFaces; ++face) search.visit(face, UnitCell::face(face));
   return search.found;
 }
@@ -114,9 +111,7 @@ DirectionBounds DirectionalTree::bounds(const glm::vec3& axis, float cosine) con
 DirectionBounds DirectionalTree::uniformBounds(const glm::vec3& axis, float cosine) const {
   const CornerLevel& level = cornerLevel(level_);
   // Corners of cells that the cone meets are at most an edge away from it.
-  const float sine = std::sqrt(std::max(1 - cosine * cosine, 0.f));
-  const float edgeSine = std::sqrt(1 - level.edgeCosine * level.edgeCosine);
-  const float least = cosine < -level.edgeCosine ? -2 : cosine * level.edgeCosine - sine * edgeSine;
+  const float least = Cone::meeting(Cone(cosine), Cone(level.edgeCosine));
   DirectionBounds found;
   bool any = false;
   for (size_t i = 0; i < corners_.size(); ++i) {

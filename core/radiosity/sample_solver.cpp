@@ -36,13 +36,7 @@ float lobeTolerance(const glsl::SurfaceBrdf& brdf) {
 
 SampleSolver::SampleSolver(const Surfels& surfels, const Forest& forest, const ElementSpace& space,
                            std::span<const LeafMaterial> materials, const SampleSettings& settings)
-    : surfels_(surfels), forest_(forest), space_(space), settings_(settings) {
-  for (const LeafMaterial& m : materials) {
-    glsl::SurfaceBrdf brdf{};
-    brdf.diffuse = m.diffuse, brdf.alpha = m.alpha, brdf.f0 = m.f0, brdf.f90 = m.f90;
-    brdf.dielectric_f0 = m.dielectric_f0, brdf.dielectric_f90 = m.dielectric_f90;
-    brdf_.push_back(brdf);
-  }
+    : surfels_(surfels), forest_(forest), space_(space), settings_(settings), materials_(materials) {
   elements_.resize(forest.slots());
   frames_.resize(forest.slots());
   for (size_t i = 0; i < surfels.size(); ++i) elements_[forest.leafOf()[i]].surfel = static_cast<uint32_t>(i);
@@ -98,8 +92,8 @@ void SampleSolver::measure() {
       if (leaf) {
         e.reach = group.disc[k];
         e.glossy = glossy(4 * g + lane);
-        e.alpha = e.glossy ? brdf_[4 * g + lane].alpha : 1;
-        e.tolerance = e.glossy ? lobeTolerance(brdf_[4 * g + lane]) : 1;
+        e.alpha = e.glossy ? brdf(4 * g + lane).alpha : 1;
+        e.tolerance = e.glossy ? lobeTolerance(brdf(4 * g + lane)) : 1;
         continue;
       }
       e.firstChild = 4 * (group.children + lane);
@@ -236,13 +230,13 @@ void SampleSolver::reflect(Worker& worker, uint32_t leaf, const glm::vec3& diffu
   tree.clear();
   const float beside = glsl::luminance(diffuse);
   if (!settings_.immediate) {
-    worker.lobes.set(brdf_[leaf], worker.lights, settings_.widen);
+    worker.lobes.set(brdf(leaf), worker.lights, settings_.widen);
     if (worker.lobes.size() > 0) worker.builder.build(worker.lobes, settings, tree, beside);
     count(tree);
     return;
   }
   for (const glsl::IncidentLight& light : worker.lights) {
-    worker.lobes.set(brdf_[leaf], {&light, 1}, settings_.widen);
+    worker.lobes.set(brdf(leaf), {&light, 1}, settings_.widen);
     if (worker.lobes.size() == 0) continue;
     worker.builder.build(worker.lobes, settings, worker.single, beside);
     if (tree.empty())
@@ -271,7 +265,7 @@ void SampleSolver::reflect() {
   treeBytes_ = 0;
   tbb::enumerable_thread_specific<Worker> workers;
   tbb::parallel_for(0u, static_cast<uint32_t>(leaves), [&](uint32_t leaf) {
-    unshot_[leaf] = glsl::diffuse_albedo(brdf_[leaf]) * fresh_[leaf] * glsl::inverse_pi;
+    unshot_[leaf] = glsl::diffuse_albedo(brdf(leaf)) * fresh_[leaf] * glsl::inverse_pi;
     most_[leaf] = glsl::largest_channel(unshot_[leaf]);
     caps_[leaf].clear();
     if (!elements_[leaf].glossy) return;
@@ -354,7 +348,7 @@ void SampleSolver::project(const TreeSettings& settings) {
     if (!elements_[leaf].glossy) return;
     Worker& worker = workers.local();
     collect(leaf, false, worker.lights);
-    reflect(worker, leaf, glsl::diffuse_albedo(brdf_[leaf]) * irradiance_[leaf] * glsl::inverse_pi, settings,
+    reflect(worker, leaf, glsl::diffuse_albedo(brdf(leaf)) * irradiance_[leaf] * glsl::inverse_pi, settings,
             shown_[leaf]);
   });
   for (const Worker& worker : workers) evaluations_ += worker.builder.evaluations();

@@ -91,8 +91,8 @@ class LIMN_API SampleSolver {
   ShootCounts shoot(const Occlusion& occlusion);
 
   /// Returns whether a leaf has a specular part.
-  bool glossy(uint32_t leaf) const { return !glsl::brdf_is_lambertian(brdf_[leaf]); }
-  const glsl::SurfaceBrdf& brdf(uint32_t leaf) const { return brdf_[leaf]; }
+  bool glossy(uint32_t leaf) const { return !glsl::brdf_is_lambertian(brdf(leaf)); }
+  const glsl::SurfaceBrdf& brdf(uint32_t leaf) const { return materials_[leaf].brdf; }
   /// Returns how far above a leaf's position rays begin, in the units of the elements: in hollows, positions
   /// lie behind the triangles.
   float clearance(uint32_t leaf) const { return elements_[leaf].lift + rayClearance(space_); }
@@ -164,9 +164,9 @@ class LIMN_API SampleSolver {
   const Forest& forest_;
   const ElementSpace& space_;
   SampleSettings settings_;
-  std::vector<glsl::SurfaceBrdf> brdf_;  ///< of leaf slots
-  std::vector<Element> elements_;        ///< of slots
-  std::vector<uint32_t> firstFan_;       ///< of surfels, and the end
+  std::span<const LeafMaterial> materials_;  ///< of leaf slots
+  std::vector<Element> elements_;            ///< of slots
+  std::vector<uint32_t> firstFan_;           ///< of surfels, and the end
   std::vector<Fan> fans_;
 
   std::vector<glsl::Frame> frames_;  ///< of the trees of slots: that of the normal in world space

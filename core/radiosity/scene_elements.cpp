@@ -7,6 +7,7 @@
 #include <cmath>
 
 #include "core/base/error.h"
+#include "core/scene/deformed_surface.h"
 #include "core/scene/draw_instance.h"
 #include "core/scene/instance_areas.h"
 #include "core/scene/normal_matrix.h"
@@ -14,31 +15,9 @@
 #include "glsl/surface/reflectance.glsl"
 
 namespace limn::radiosity {
-namespace {
-
-/// The sum of what the triangles have with these places of their vertices.
-double deformedArea(const scene::Primitive& primitive, const std::vector<glm::vec3>& positions) {
-  double twice = 0;
-  for (size_t t = 0; t + 2 < primitive.indices.size(); t += 3) {
-    const glm::dvec3 corner = positions[primitive.indices[t]];
-    twice += glm::length(glm::cross(glm::dvec3(positions[primitive.indices[t + 1]]) - corner,
-                                    glm::dvec3(positions[primitive.indices[t + 2]]) - corner));
-  }
-  return 0.5 * twice;
-}
-
-}  // namespace
 
 /// One instance's vertices in world space.
 struct SceneElements::Instance {
-  /// Holds the vertices in one state of a skin and morph targets, before the matrix.
-  struct Deformed {
-    scene::Deformation state;
-    std::vector<glm::vec3> positions, normals;
-    std::vector<glm::vec4> tangents;  ///< nobody looks at them; deform() makes them
-    double area = 0;                  ///< of all triangles
-  };
-
   const scene::Primitive* primitive = nullptr;
   /// The same of geometry sources, which fill again what nobody holds.
   std::shared_ptr<const scene::Primitive> held;
@@ -47,25 +26,18 @@ struct SceneElements::Instance {
   glm::dvec3 areas{0};  ///< factors by which the matrix changed areas when the elements were made
   double madeArea = 0;  ///< of deformed instances, before the matrix, when the elements were made
   /// Holds those of the pose that was asked for last: fits() and then update() ask for that of a frame.
-  mutable Deformed deformed;
+  mutable scene::DeformedSurface deformed;
   std::vector<glm::vec3> positions, normals;
 
-  const Deformed& deformedIn(const scene::Pose& pose, const scene::DrawInstance& draw) const {
-    const scene::Deformation& asked = pose.deformed[static_cast<size_t>(draw.deformed)];
-    const scene::Deformation& known = deformed.state;
-    if (!deformed.positions.empty() && asked.joints == known.joints &&
-        asked.morphWeights == known.morphWeights)
-      return deformed;
-    deformed.state = asked;
-    scene::deform(*primitive, asked, deformed.positions, deformed.normals, deformed.tangents);
-    deformed.area = deformedArea(*primitive, deformed.positions);
+  const scene::DeformedSurface& deformedIn(const scene::Pose& pose, const scene::DrawInstance& draw) const {
+    deformed.move(*primitive, pose.deformed[static_cast<size_t>(draw.deformed)]);
     return deformed;
   }
 
   void move(const scene::Pose& pose, const scene::DrawInstance& draw) {
-    const Deformed* moved = draw.deformed != scene::kNone ? &deformedIn(pose, draw) : nullptr;
-    positions = moved ? moved->positions : primitive->positions;
-    normals = moved ? moved->normals : primitive->normals;
+    const scene::DeformedSurface* moved = draw.deformed != scene::kNone ? &deformedIn(pose, draw) : nullptr;
+    positions = moved ? moved->positions() : primitive->positions;
+    normals = moved ? moved->normals() : primitive->normals;
     const glm::mat4& matrix = draw.objectToWorld;
     mirrored = scene::mirrored(draw);
     const glm::mat3 toNormal = scene::normalMatrix(matrix);
@@ -80,7 +52,7 @@ struct SceneElements::Instance {
   /// Whether a skin or morph targets leave the area nearly as it was when the elements were made.
   bool keepsArea(const scene::Pose& pose, const scene::DrawInstance& draw) const {
     if (draw.deformed == scene::kNone) return true;
-    return scene::areasAlike(glm::dvec3(deformedIn(pose, draw).area), glm::dvec3(madeArea));
+    return scene::areasAlike(glm::dvec3(deformedIn(pose, draw).area()), glm::dvec3(madeArea));
   }
 };
 
@@ -103,7 +75,7 @@ SceneElements::SceneElements(const scene::Scene& scene, const scene::Pose& pose,
   // A closed mesh has half as many vertices as triangles.
   if (triangles / 4 > maxElements) refuse(fmt::format("the scene has {} triangles", triangles));
   moveInstances(pose);
-  for (Instance& instance : instances_) instance.madeArea = instance.deformed.area;
+  for (Instance& instance : instances_) instance.madeArea = instance.deformed.area();
   std::vector<TriangleMesh> meshes(instances_.size());
   for (size_t i = 0; i < instances_.size(); ++i) {
     const Instance& instance = instances_[i];
@@ -222,12 +194,7 @@ void SceneElements::setMaterials() {
         material.ior);
     const uint32_t leaf = forest_.leafOf()[i];
     leaves_[leaf].albedo = glsl::hemispherical_reflectance(brdf);
-    materials_[leaf] = {.diffuse = brdf.diffuse,
-                        .alpha = brdf.alpha,
-                        .f0 = brdf.f0,
-                        .f90 = brdf.f90,
-                        .dielectric_f0 = brdf.dielectric_f0,
-                        .dielectric_f90 = brdf.dielectric_f90};
+    materials_[leaf].brdf = brdf;
   }
 }
 

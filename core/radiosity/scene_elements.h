@@ -13,6 +13,7 @@
 #include "core/radiosity/bodies.h"
 #include "core/radiosity/forest.h"
 #include "core/scene/scene.h"
+#include "glsl/surface/brdf.glsl"
 
 namespace limn::radiosity {
 
@@ -27,18 +28,13 @@ struct Leaf {
 };
 static_assert(sizeof(Leaf) == 64 && offsetof(Leaf, position) == 16);
 
-/// Holds the reflectance of a leaf's surface, textures averaged over the disc (storage buffer element): a
-/// glsl::SurfaceBrdf. Specular surfaces reflect nothing.
+/// Holds the reflectance of a leaf's surface, textures averaged over the disc, as an element of a storage
+/// buffer of glsl::SurfaceBrdf. Specular surfaces reflect nothing.
 struct LeafMaterial {
-  glm::vec3 diffuse{0};
-  float alpha = 0;  ///< 0..1
-  glm::vec3 f0{0};
-  float f90 = 0;
-  float dielectric_f0 = 0;
-  float dielectric_f90 = 0;
+  glsl::SurfaceBrdf brdf{};
   glm::vec2 unused{0};
 };
-static_assert(sizeof(LeafMaterial) == 48 && offsetof(LeafMaterial, dielectric_f0) == 32);
+static_assert(sizeof(LeafMaterial) == 48 && offsetof(glsl::SurfaceBrdf, dielectric_f0) == 32);
 
 class LIMN_API SceneElements {
  public:

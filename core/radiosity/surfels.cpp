@@ -321,25 +321,32 @@ class Builder {
 constexpr float kCentroidShare = 7.f / 36;
 
 void addNeighbours(Surfels& s) {
-  std::vector<std::vector<Surfels::Neighbour>> lists(s.size());
-  for (size_t t = 0; t < s.triangles.size(); t += 3) {
-    const glm::vec3 a = s.vertices[s.triangles[t]], b = s.vertices[s.triangles[t + 1]],
-                    c = s.vertices[s.triangles[t + 2]];
-    const float area = glm::length(glm::cross(b - a, c - a)) / 2;
-    for (size_t k = 0; k < 3; ++k) {
-      const uint32_t self = s.triangles[t + k];
+  // The corners of all triangles, those of a surfel together. One vertex may have as many as there are
+  // triangles.
+  std::vector<uint32_t> end(s.size() + 1, 0), corners(s.triangles.size());
+  for (const uint32_t surfel : s.triangles) ++end[surfel + 1];
+  std::partial_sum(end.begin(), end.end(), end.begin());
+  for (uint32_t i = 0; i < corners.size(); ++i) corners[end[s.triangles[i]]++] = i;
+  // Where each surfel was added last: to the list in work or to an earlier one.
+  std::vector<size_t> known(s.size(), std::numeric_limits<size_t>::max());
+  s.firstNeighbour.assign(1, 0);
+  for (uint32_t self = 0, i = 0; self < s.size(); ++self) {
+    const size_t first = s.neighbours.size();
+    for (; i < end[self]; ++i) {
+      const size_t k = corners[i] % 3, t = corners[i] - k;
+      const glm::vec3 a = s.vertices[s.triangles[t]], b = s.vertices[s.triangles[t + 1]],
+                      c = s.vertices[s.triangles[t + 2]];
+      const float area = glm::length(glm::cross(b - a, c - a)) / 2;
       for (const size_t other : {(k + 1) % 3, (k + 2) % 3}) {
         const uint32_t neighbour = s.triangles[t + other];
-        auto& list = lists[self];
-        auto found = std::ranges::find(list, neighbour, &Surfels::Neighbour::surfel);
-        if (found == list.end()) found = list.insert(list.end(), {neighbour, 0});
-        found->weight += kCentroidShare * area / 3 / std::max(s.areas[self], 1e-37f);
+        size_t& place = known[neighbour];
+        if (place < first || place >= s.neighbours.size()) {
+          place = s.neighbours.size();
+          s.neighbours.push_back({neighbour, 0});
+        }
+        s.neighbours[place].weight += kCentroidShare * area / 3 / std::max(s.areas[self], 1e-37f);
       }
     }
-  }
-  s.firstNeighbour.assign(1, 0);
-  for (const auto& list : lists) {
-    s.neighbours.insert(s.neighbours.end(), list.begin(), list.end());
     s.firstNeighbour.push_back(static_cast<uint32_t>(s.neighbours.size()));
   }
 }

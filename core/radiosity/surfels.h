@@ -59,7 +59,8 @@ struct Surfels {
   };
   std::vector<Rim> rims;
   uint32_t holeCount = 0;
-  /// Holds a neighbour; those of surfel i are [firstNeighbour[i], firstNeighbour[i + 1]).
+  /// Holds a neighbour, and what it weighs in centre(); those of surfel i are [firstNeighbour[i],
+  /// firstNeighbour[i + 1]).
   struct Neighbour {
     uint32_t surfel = 0;
     float weight = 0;
@@ -68,6 +69,10 @@ struct Surfels {
   std::vector<Neighbour> neighbours;
 
   size_t size() const { return vertices.size(); }
+  /// Returns the neighbours of surfel i, each once.
+  std::span<const Neighbour> neighboursOf(size_t i) const {
+    return std::span(neighbours).subspan(firstNeighbour[i], firstNeighbour[i + 1] - firstNeighbour[i]);
+  }
   /// Returns the centre of surfel i for other positions of the vertices: the centroid of its third of the
   /// adjacent triangles, moved along the normal into the vertex's tangent plane. On smooth surfaces that is
   /// nearly the vertex; at the edge of a wall it lies inside the wall's face instead of on the next wall,
@@ -77,8 +82,8 @@ struct Surfels {
   glm::vec3 centre(size_t i, std::span<const glm::vec3> at, const glm::vec3& normal) const {
     glm::vec3 offset(0);
     float rise = 0;
-    for (uint32_t k = firstNeighbour[i]; k < firstNeighbour[i + 1]; ++k) {
-      const glm::vec3 to = neighbours[k].weight * (at[neighbours[k].surfel] - at[i]);
+    for (const Neighbour& n : neighboursOf(i)) {
+      const glm::vec3 to = n.weight * (at[n.surfel] - at[i]);
       offset += to;
       rise += std::max(glm::dot(to, normal), 0.f);
     }

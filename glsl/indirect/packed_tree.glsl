@@ -1,6 +1,6 @@
 // Light over directions as a tree of triangles (core/radiosity/directional_tree.h), 8 bytes a node: its first child, counted
 // from the tree's first node, 0 for none, and its value over the tree's scale (shared_exponent_encode). The four faces of the
-// hemisphere around the normal come first, or all eight. In the uniform basis there are the values at the corners of a level
+// hemisphere around the normal come first. In the uniform basis there are the values at the corners of a level
 // instead, two in the place of a node.
 #ifndef LIMN_PACKED_TREE_GLSL
 #define LIMN_PACKED_TREE_GLSL
@@ -35,12 +35,11 @@ LIMN_FN uvec2 packed_tree_cell(PackedTree tree, vec3 w, LIMN_OUT(float) edge) {
   return node;
 }
 
-// The value in direction w, w.z >= 0, of a tree of the hemisphere, over its scale; `smoothed`: the mean of six values
-// over the footprint of w's cell.
-LIMN_FN vec3 packed_tree_value(PackedTree tree, vec3 w, bool smoothed) {
+// The value in direction w, w.z >= 0, of a tree of the hemisphere, over its scale: the mean of six values over the footprint of
+// w's cell.
+LIMN_FN vec3 packed_tree_value(PackedTree tree, vec3 w) {
   float edge;
-  uvec2 node = packed_tree_cell(tree, w, edge);
-  if (!smoothed) return shared_exponent_decode(node.y);
+  packed_tree_cell(tree, w, edge);
   vec3 place = octahedral_place(w);
   vec3 signs = octahedral_signs(octahedral_face(w));
   vec3 sum = vec3(0.0f);

@@ -2,16 +2,16 @@
 // uniform basis that is linear in each triangle.
 //
 // With n = 2^level the hemisphere around +z has the corners (x, y, z) n = (i, j, n - |i| - |j|), row after row of equal j: a
-// diamond. The other hemisphere follows with an equator of its own.
+// diamond.
 #ifndef LIMN_OCTAHEDRAL_GRID_GLSL
 #define LIMN_OCTAHEDRAL_GRID_GLSL
 #include "glsl/numeric/octahedral_cells.glsl"
 LIMN_BEGIN
 
-// The number of corners of a hemisphere.
+// The number of corners.
 LIMN_FN uint octahedral_grid_size(uint n) { return 2u * n * (n + 1u) + 1u; }
 
-// The number of corner (i, j), |i| + |j| <= n, in the list of its hemisphere.
+// The number of corner (i, j), |i| + |j| <= n, in the list.
 LIMN_FN uint octahedral_grid_index(ivec2 corner, uint n) {
   int size = int(n);
   int before = size - abs(corner.y);  // corners of the row on each side of i = 0
@@ -19,7 +19,7 @@ LIMN_FN uint octahedral_grid_index(ivec2 corner, uint n) {
   return uint(first + before + corner.x);
 }
 
-// The triangle around a direction: its corners and their weights, whose sum is 1.
+// The triangle around a direction above the horizon: its corners and their weights, whose sum is 1.
 struct OctahedralGridPlace {
   uvec3 corner;
   vec3 weight;
@@ -36,12 +36,10 @@ LIMN_FN OctahedralGridPlace octahedral_grid_place(vec3 w, uint n) {
   int sx = w.x < 0.0f ? -1 : 1;
   int sy = w.y < 0.0f ? -1 : 1;
   ivec2 origin = outer ? ivec2(i + 1, j + 1) : ivec2(i, j);
-  uint first = w.z < 0.0f ? octahedral_grid_size(n) : 0u;
   OctahedralGridPlace r;
   r.corner = uvec3(octahedral_grid_index(ivec2(sx * origin.x, sy * origin.y), n),
                    octahedral_grid_index(ivec2(sx * (i + 1), sy * j), n),
-                   octahedral_grid_index(ivec2(sx * i, sy * (j + 1)), n)) +
-             uvec3(first);
+                   octahedral_grid_index(ivec2(sx * i, sy * (j + 1)), n));
   r.weight = outer ? vec3(inside.x + inside.y - 1.0f, 1.0f - inside.y, 1.0f - inside.x)
                    : vec3(1.0f - inside.x - inside.y, inside.x, inside.y);
   return r;

@@ -94,7 +94,7 @@ frame::BufferHandle Display::towardsEye(frame::FrameGraph& graph, const Techniqu
     gpu::Program& program = context.use(kernel);
     setTrees(program);
     program.set("leaf_count", count);
-    context.dispatch(static_cast<int>(count), 1, 1, 64, 1);
+    context.dispatchRows((int64_t{count} + 63) / 64);
   });
   return towards;
 }

@@ -24,7 +24,7 @@ vec3 leaf_radiance(uint slot, vec3 view) {
   if (tree.first == no_tree) return vec3(0.0);
   vec3 w = to_local(frame_around(leaves[slot].normal.xyz), view);
   w.z = max(w.z, 1e-3);
-  return tree.scale * (grid > 0u ? packed_grid_value(tree.first, grid, w) : packed_tree_value(tree.first, w, true));
+  return tree.scale * (grid > 0u ? packed_grid_value(tree.first, grid, w) : packed_tree_value(tree.first, w));
 }
 
 #endif  // LIMN_LEAF_TREE_GLSL

@@ -6,6 +6,7 @@
 
 #include "core/base/error.h"
 #include "core/gpu_scene/gpu_scene.h"
+#include "core/shadow/sample_batches.h"
 
 namespace limn::illumination_samples {
 
@@ -69,7 +70,7 @@ Solution::Solution(frame::FrameGraph& graph, const TechniqueInputs& inputs, cons
   irradiance = lit_;
   for (int bounce = 0; bounce < settings.bounces; ++bounce) addBounce(graph, device);
   if (settings.shown == Shown::gathered)
-    addSamples(graph, device);
+    addSamples(graph, inputs);
   else
     addTrees(graph, device);
 }
@@ -110,7 +111,8 @@ void Solution::addBounce(frame::FrameGraph& graph, gpu::Device& device) {
   });
 }
 
-void Solution::addSamples(frame::FrameGraph& graph, gpu::Device& device) {
+void Solution::addSamples(frame::FrameGraph& graph, const TechniqueInputs& inputs) {
+  gpu::Device& device = inputs.gpuScene.device();
   rangesNow_.resize(elements_.elements().forest().slots());
   rangeBuffer_ = gpu::Buffer(device, "ranges of samples", rangesNow_.size() * sizeof(glm::uvec2),
                              gpu::BufferUse::updated);
@@ -127,7 +129,9 @@ void Solution::addSamples(frame::FrameGraph& graph, gpu::Device& device) {
                        "of all elements");
   senders = pass.write(graph.importBuffer("senders of samples", senderBuffer_), Access::copyTarget,
                        "where elements are");
-  pass.execute([this, &device](frame::PassContext&) { uploadSamples(device); });
+  pass.execute([this, &device, mostSteps = shadow::mostStepsOfLoops(inputs)](frame::PassContext&) {
+    uploadSamples(device, mostSteps);
+  });
 }
 
 void Solution::addTrees(frame::FrameGraph& graph, gpu::Device& device) {
@@ -160,18 +164,15 @@ void reserve(gpu::Device& device, gpu::Buffer& buffer, const char* what, size_t 
   if (buffer.size() < bytes) buffer = gpu::Buffer(device, what, bytes, gpu::BufferUse::updated);
 }
 
-/// llvmpipe leaves all loops of a thread after 65,535 steps in all; the rest is for those around samples.
-constexpr uint64_t kMostSteps = 65000;
-
-/// Throws UsageError where a pixel of a glossy surface has more samples than software renderers take.
-void checkSteps(const radiosity::SampleSolver& solver) {
+/// Throws UsageError where a pixel of a glossy surface has more samples than its loops may take steps.
+void checkSteps(const radiosity::SampleSolver& solver, int mostSteps) {
   const uint64_t most = solver.mostSamplesAround();
-  if (most > kMostSteps)
+  if (most > static_cast<uint64_t>(mostSteps))
     throw UsageError(
         fmt::format("illumination_samples: display=gather reflects up to {} samples at a pixel; software "
                     "renderers take {}: a larger link_error or longest_edge makes fewer, and display=pixel "
                     "reflects them at elements",
-                    most, kMostSteps));
+                    most, mostSteps));
 }
 
 }  // namespace
@@ -191,8 +192,8 @@ void Solution::uploadTrees(gpu::Device& device) {
   nodeBuffer_.update(0, nodesNow_.data(), bytes);
 }
 
-void Solution::uploadSamples(gpu::Device& device) {
-  if (device.software()) checkSteps(solver_);
+void Solution::uploadSamples(gpu::Device& device, int mostSteps) {
+  checkSteps(solver_, mostSteps);
   const size_t bytes = solver_.sampleCount() * sizeof(glsl::IlluminationSample);
   reserve(device, sampleBuffer_, "illumination samples", bytes);
   const radiosity::ElementSpace& space = elements_.elements().space();

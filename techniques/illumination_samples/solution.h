@@ -79,10 +79,10 @@ class Solution {
   };
   void addLights(frame::FrameGraph& graph, const TechniqueInputs& inputs);
   void addBounce(frame::FrameGraph& graph, gpu::Device& device);
-  void addSamples(frame::FrameGraph& graph, gpu::Device& device);
+  void addSamples(frame::FrameGraph& graph, const TechniqueInputs& inputs);
   void addTrees(frame::FrameGraph& graph, gpu::Device& device);
   void light(const scene::Pose& pose);
-  void uploadSamples(gpu::Device& device);
+  void uploadSamples(gpu::Device& device, int mostSteps);
   void uploadTrees(gpu::Device& device);
 
   const Elements& elements_;

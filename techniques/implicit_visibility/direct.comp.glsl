@@ -1,6 +1,6 @@
-// What leaves reflect of the lights and of the environment, and so send on. With GLOSSY a thread for each direction, and
+// What leaves reflect of the lights and, with ENVIRONMENT, of the sky, and so send on. With GLOSSY a thread for each direction, and
 // lights alone. LIGHT_TEXTURES: see light_texture.glsl. MEDIUM 1: light of lights is attenuated on its way to the leaf.
-// LIGHTS_FIRST, LIGHTS_LAST: no lights were added before these, or will be after them.
+// LIGHTS_FIRST, LIGHTS_LAST: nothing was added before these lights, or will be after them.
 #include "glsl/light/light_texture.glsl"
 #include "glsl/light/unshadowed_light.glsl"
 #include "glsl/media/light_transmittance.glsl"
@@ -22,11 +22,11 @@ layout(std430) readonly buffer Indices { uint indices[]; };
 layout(std430) readonly buffer Seen { float seen[]; };
 layout(std430) readonly buffer Groups { ElementGroup groups[]; };
 #endif
-#if ENVIRONMENT && !GLOSSY
+#if ENVIRONMENT
 layout(std430) readonly buffer Sky { vec4 sky[]; };
 #endif
 #if GLOSSY
-layout(std430) readonly buffer Materials { LeafMaterial materials[]; };
+layout(std430) readonly buffer Materials { SurfaceBrdf materials[]; };  // limn::radiosity::LeafMaterial
 #endif
 uniform uint slots;
 uniform uint light_count;
@@ -62,7 +62,7 @@ void main() {
       sum += lit;
     }
 #endif
-#if ENVIRONMENT && !GLOSSY
+#if ENVIRONMENT
     sum += leaf.albedo * sky[slot].rgb * inverse_pi;
 #endif
   }

@@ -7,17 +7,6 @@
 #include "glsl/indirect/direction_bins.glsl"
 #include "glsl/indirect/surface_leaf.glsl"
 
-// limn::radiosity::LeafMaterial.
-struct LeafMaterial {
-  vec3 diffuse;
-  float alpha;
-  vec3 f0;
-  float f90;
-  float dielectric_f0;
-  float dielectric_f90;
-  vec2 unused;
-};
-
 const uint bin_count = 6u * BINS * BINS;
 
 #if GLOSSY
@@ -53,18 +42,10 @@ vec3 sent_direction(uint sent) {
 }
 
 // Lobes are no narrower than the coarser of the bins that light comes from and is sent into.
-SurfaceBrdf binned_brdf(LeafMaterial m) {
-  SurfaceBrdf s;
-  s.diffuse = m.diffuse;
+SurfaceBrdf binned_brdf(SurfaceBrdf s) {
 #if GLOSSY
-  s.alpha = binned_alpha(m.alpha, min(BINS, uint(GLOSSY)));
-#else
-  s.alpha = m.alpha;
+  s.alpha = binned_alpha(s.alpha, min(BINS, uint(GLOSSY)));
 #endif
-  s.f0 = m.f0;
-  s.f90 = m.f90;
-  s.dielectric_f0 = m.dielectric_f0;
-  s.dielectric_f90 = m.dielectric_f90;
   return s;
 }
 

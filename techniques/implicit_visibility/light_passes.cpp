@@ -99,15 +99,16 @@ std::span<const uint32_t> LightPasses::firstBatch(std::span<const uint32_t> ligh
 }
 
 LightPasses::Sent LightPasses::directLight(const PassRequest& r, std::span<const uint32_t> lights, bool sky) {
+  const bool throughBins = sky && elements_.glossy();  // the sky comes last, and by itself
   Sent sent;
   size_t first = 0;
   do {
     const auto batch = firstBatch(lights.subspan(first));
     first += batch.size();
-    const bool last = first == lights.size();
+    const bool last = first == lights.size() && !throughBins;
     sent = addDirectLight(r, batch, sky && last, sent.first, last);
   } while (first < lights.size());
-  return sky && elements_.glossy() ? reflect(r, this->sky(r), sent.first) : sent;
+  return throughBins ? reflect(r, this->sky(r), sent.first) : sent;
 }
 
 LightPasses::Sent LightPasses::addDirectLight(const PassRequest& r, std::span<const uint32_t> lights,
@@ -123,7 +124,7 @@ LightPasses::Sent LightPasses::addDirectLight(const PassRequest& r, std::span<co
     pass.read(seen->handles.seen, Access::storageLoad, "Seen", "V of each light")
         .read(seen->handles.indices, Access::storageLoad, "Indices", "which lights")
         .read(elements_.groups, Access::storageLoad, "Groups", "a light does not see itself");
-  if (sky && !glossy) pass.read(skyIrradiance, Access::storageLoad, "Sky", "irradiance of the environment");
+  if (sky) pass.read(skyIrradiance, Access::storageLoad, "Sky", "irradiance of the environment");
   if (glossy) pass.read(elements_.materials, Access::storageLoad, "Materials", "BRDFs");
   // Some compilers keep what only glossy surfaces would look up.
   if (glossy || seen)

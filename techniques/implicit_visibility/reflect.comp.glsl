@@ -11,7 +11,7 @@ layout(std430) buffer Direct { vec4 direct[]; };  // becomes the same as next, w
 layout(std430) readonly buffer Direct { vec4 direct[]; };
 #endif
 layout(std430) writeonly buffer Next { vec4 next[]; };
-layout(std430) readonly buffer Materials { LeafMaterial materials[]; };
+layout(std430) readonly buffer Materials { SurfaceBrdf materials[]; };  // limn::radiosity::LeafMaterial
 uniform uint first_leaf;
 uniform uint leaf_count;
 

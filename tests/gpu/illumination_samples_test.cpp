@@ -335,7 +335,7 @@ TEST_F(IlluminationSamplesTest, PixelsOfMoreSamplesThanSoftwareRenderersTakeAreR
   EXPECT_GT(shown("0.1"), 0);
   if (!device().software()) return;
   EXPECT_THAT(errorOf([&] { shown("0.0125"); }),
-              testing::HasSubstr("samples at a pixel; software renderers take 65000"));
+              testing::HasSubstr("samples at a pixel; software renderers take 60000"));
 }
 
 TEST_F(IlluminationSamplesTest, ScenesWhoseLinksLookAtTooManyPairsAreRefused) {

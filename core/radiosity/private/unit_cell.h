@@ -1,11 +1,26 @@
-// Internal to directional trees: a cell with its corners' directions, which its children share.
+// Internal to directional trees: cones of directions, and a cell with its corners' directions, which its
+// children share.
 #pragma once
 
 #include <algorithm>
+#include <cmath>
 
 #include "glsl/numeric/octahedral_cells.glsl"
 
 namespace limn::radiosity {
+
+/// A cone of directions around an axis, by its half angle.
+struct Cone {
+  float cosine, sine;
+
+  explicit Cone(float cosineOfHalf)
+      : cosine(cosineOfHalf), sine(std::sqrt(std::max(1 - cosineOfHalf * cosineOfHalf, 0.f))) {}
+  /// Returns the least cosine between the axes of two cones that meet.
+  static float meeting(const Cone& a, const Cone& b) {
+    if (a.cosine < -b.cosine) return -2;  // together they are more than half a turn
+    return a.cosine * b.cosine - a.sine * b.sine;
+  }
+};
 
 struct UnitCell {
   glsl::OctahedralCell cell;

@@ -162,6 +162,32 @@ TEST(BlockerLists, AreNotMadeForWideSuns) {
   EXPECT_TRUE(lists.triangles().empty());
 }
 
+/// All of a floor below a plate, which comes before it: there are more leaves than are listed at a time.
+TEST(BlockerLists, HoldWhatHidesALightFromManyLeaves) {
+  scene::Scene scene;
+  scene::Pose pose;
+  const int plate = test::addMesh(scene, test::floorPrimitive(1, test::addMaterial(scene)));
+  test::addInstance(scene, pose, plate, glm::translate(glm::mat4(1), {0, 0.5f, 0}));
+  test::addInstance(scene, pose, plate);
+  const SceneElements elements(scene, pose, 0.016f, 1u << 20);
+  const std::array bounds{LightBounds::of(square(0))};
+  BlockerLists lists;
+  lists.build(elements, nullptr, bounds, kPlenty);
+  const auto objectOf = [&](uint32_t leaf) { return elements.forest().groups()[leaf / 4].object; };
+  size_t hidden = 0;
+  for (uint32_t leaf = 0; leaf < elements.forest().leafSlots(); ++leaf) {
+    if (elements.leaves()[leaf].used == 0 || objectOf(leaf) != 1) continue;
+    ++hidden;
+    const BlockerLists::Range range = lists.ranges()[leaf];
+    ASSERT_NE(range.count, BlockerLists::kUnlisted) << leaf;
+    const auto own = lists.triangles().subspan(range.first, range.count);
+    EXPECT_TRUE(std::ranges::any_of(own, [&](uint32_t entry) {
+      return objectOf(elements.triangles()[3 * (entry & ~BlockerLists::kBothSides)]) == 0;
+    })) << leaf;
+  }
+  EXPECT_GT(hidden, size_t{1} << 14);
+}
+
 TEST(BlockerLists, KeepToTheirRoomAndLeaveOutFullShadow) {
   const BlockedWorld world;
   const SceneElements& elements = *world.elements;

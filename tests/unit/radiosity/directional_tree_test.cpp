@@ -227,8 +227,10 @@ TEST(PackedTree, IsTheTree) {
     for (int i = 0; i < 2000; ++i) {
       glm::vec3 w = random.direction();
       w.z = std::abs(w.z);
-      const glm::vec3 found[] = {scale * glsl::packed_tree_value(nodes.data() + 7, w, false),
-                                 scale * glsl::packed_tree_value(nodes.data() + 7, w, true)};
+      float edge = 0;
+      const glm::uvec2 cell = glsl::packed_tree_cell(nodes.data() + 7, w, edge);
+      const glm::vec3 found[] = {scale * glsl::shared_exponent_decode(cell.y),
+                                 scale * glsl::packed_tree_value(nodes.data() + 7, w)};
       const glm::vec3 exact[] = {tree.value(w), tree.smoothValue(w)};
       for (int k = 0; k < 2; ++k)
         for (int c = 0; c < 3; ++c) {

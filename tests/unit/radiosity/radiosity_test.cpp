@@ -6,7 +6,6 @@
 #include <algorithm>
 #include <cstdio>
 #include <numeric>
-#include <set>
 #include <vector>
 
 #include "core/base/error.h"
@@ -126,47 +125,6 @@ TEST(RadiosityTest, LeafAreasSumToTheMeshArea) {
   for (const uint32_t root : sphere.forest.roots()) roots += sphere.forest.groups()[root].area.x;
   EXPECT_NEAR(roots, sphere.area(), 1e-4);
   EXPECT_NEAR(sphere.area() / (4 * glsl::pi / 3), 1, 0.01);  // its bounds' diagonal is 2 sqrt 3 of its radius
-}
-
-TEST(RadiosityTest, SplitEdgesStayClosed) {
-  const Surfels coarse = surfelsOf({sphereMesh({0, 0, 0}, 1, 8)});
-  const Surfels fine = surfelsOf({sphereMesh({0, 0, 0}, 1, 8)}, 0.07f);
-  EXPECT_EQ(coarse.backless[0], 1);
-  EXPECT_EQ(fine.backless[0], 1) << "no crack between triangles that share an edge";
-  EXPECT_GT(fine.size(), 4 * coarse.size());
-}
-
-TEST(RadiosityTest, DuplicateVerticesAreOneSurfel) {
-  const TriangleMesh sphere = sphereMesh({0, 0, 0}, 1, 12);
-  TriangleMesh soup;
-  for (const uint32_t i : sphere.indices) {
-    soup.indices.push_back(static_cast<uint32_t>(soup.positions.size()));
-    soup.positions.push_back(sphere.positions[i]);
-    soup.normals.push_back(sphere.normals[i]);
-  }
-  const Surfels whole = surfelsOf({sphere}), split = surfelsOf({soup});
-  EXPECT_EQ(whole.size(), split.size());
-  EXPECT_EQ(whole.size(), 24u * 11 + 2);
-  EXPECT_EQ(split.backless[0], 1);
-}
-
-/// A sphere that is tiny beside the scene: all of its vertices lie at one place, and elements differ by their
-/// normals alone, which are means over each vertex once.
-TEST(RadiosityTest, VerticesOfATinyMeshCountOnceEach) {
-  const std::vector<TriangleMesh> meshes{sphereMesh({0, 0, 0}, 1e-7f, 16)};
-  const Surfels surfels = createSurfels(meshes, 1);
-  EXPECT_LT(surfels.size(), 64u);
-  std::set<uint32_t> all;
-  for (size_t i = 0; i < surfels.size(); ++i) {
-    std::set<uint32_t> own;
-    for (uint32_t k = surfels.firstOrigin[i]; k < surfels.firstOrigin[i + 1]; ++k) {
-      const SurfelOrigin& o = surfels.origins[k];
-      const uint32_t vertex = o.vertices[o.weights.x == 1 ? 0 : o.weights.y == 1 ? 1 : 2];
-      EXPECT_TRUE(own.insert(vertex).second) << vertex;
-      all.insert(vertex);
-    }
-  }
-  EXPECT_GE(all.size() + 4, meshes[0].positions.size());
 }
 
 TEST(RadiosityTest, TrianglesWithoutAreaAndSingleTrianglesAreHarmless) {

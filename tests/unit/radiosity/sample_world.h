@@ -17,16 +17,16 @@ class FreeSight final : public Occlusion {
 
 inline LeafMaterial diffuseLeaf(float albedo) {
   LeafMaterial m;
-  m.diffuse = glm::vec3(albedo);
-  m.alpha = 1;
+  m.brdf.diffuse = glm::vec3(albedo);
+  m.brdf.alpha = 1;
   return m;
 }
 
 inline LeafMaterial metalLeaf(float roughness) {
   LeafMaterial m;
-  m.alpha = roughness * roughness;
-  m.f0 = glm::vec3(0.75f);
-  m.f90 = 1;
+  m.brdf.alpha = roughness * roughness;
+  m.brdf.f0 = glm::vec3(0.75f);
+  m.brdf.f90 = 1;
   return m;
 }
 
