@@ -11,8 +11,10 @@ constexpr uint32_t kSkinWords = 6;    // 4 x 16-bit joints, 4 float weights
 constexpr uint32_t kMorphFloats = 9;  // deltas of position, normal, tangent
 constexpr int kVerticesPerGroup = 64;
 
-/// Rewrites a buffer, growing it to the next power of two when it must.
+/// Rewrites a buffer, growing it to the next power of two when it must. Throws UsageError for more than a
+/// storage block.
 void store(gpu::Device& device, gpu::Buffer& buffer, const char* label, const void* data, size_t bytes) {
+  checkStorageBlock(device, label, bytes);
   if (!buffer || buffer.size() < bytes)
     buffer = gpu::Buffer(device, label, std::bit_ceil(std::max<size_t>(bytes, 64)), gpu::BufferUse::updated);
   buffer.update(0, data, bytes);

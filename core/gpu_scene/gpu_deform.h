@@ -19,7 +19,7 @@ class GpuDeform {
   GpuDeform(gpu::Device& device, const Scene& scene);
 
   /// Collects the state of all deformed primitives, whose vertices are written to `targets` (parallel to
-  /// Pose::deformed). Returns true if anything changed since the last call.
+  /// Pose::deformed). Returns true if anything changed since the last call. Throws as the constructor does.
   bool update(const Pose& pose, const GpuGeometry& geometry, const std::vector<GeometryRange>& targets);
 
   /// Declares the pass "deform", which writes the deformed ranges of `geometry`, and returns the new version.
@@ -28,7 +28,6 @@ class GpuDeform {
   /// Marks the state as changed in the graph of the last addPass().
   void touch(frame::FrameGraph& graph) const;
   void forget();
-  size_t jobCount() const { return jobs_.size(); }
 
  private:
   struct Rest {

@@ -83,10 +83,10 @@ void grow(gpu::Buffer& buffer, const char* label, size_t bytes, gpu::BufferUse u
 
 }  // namespace
 
-void checkStorageBlock(const gpu::Device& device, const char* what, uint64_t bytes) {
+void checkStorageBlock(const gpu::Device& device, const char* what, uint64_t bytes, const char* where) {
   const auto most = static_cast<uint64_t>(device.limits().maxStorageBlockBytes);
   if (bytes > most)
-    throw UsageError(fmt::format("scene: {} take {} MiB, more than the {} MiB of a storage buffer", what,
+    throw UsageError(fmt::format("{}: {} take {} MiB, more than the {} MiB of a storage buffer", where, what,
                                  bytes >> 20, most >> 20));
 }
 

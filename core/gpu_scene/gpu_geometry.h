@@ -16,8 +16,10 @@ struct GeometryRange {
   uint32_t firstIndex = 0, indexCount = 0;
 };
 
-/// Throws UsageError where shaders could not reach all of a buffer that holds `bytes` of `what`.
-void checkStorageBlock(const gpu::Device& device, const char* what, uint64_t bytes);
+/// Throws UsageError where shaders could not reach all of a buffer that holds `bytes` of `what`, of which
+/// there are too many in `where`.
+void checkStorageBlock(const gpu::Device& device, const char* what, uint64_t bytes,
+                       const char* where = "scene");
 
 class GpuGeometry {
  public:

@@ -171,7 +171,7 @@ void GpuScene::Implementation::sort() {
   });
 }
 
-/// Brings a buffer to `next` (which becomes `current`). True if it changed.
+/// Brings a buffer to `next`, which is swapped with `current`. True if it changed.
 template <class T>
 bool GpuScene::Implementation::upload(gpu::Buffer& buffer, const char* label, std::vector<T>& current,
                                       std::vector<T>& next) {
@@ -181,7 +181,7 @@ bool GpuScene::Implementation::upload(gpu::Buffer& buffer, const char* label, st
   if (buffer && same) return false;
   if (!buffer || buffer.size() < bytes) buffer = gpu::Buffer(device, label, bytes, gpu::BufferUse::updated);
   buffer.update(0, next.data(), bytes);
-  current = next;
+  current.swap(next);
   return true;
 }
 
@@ -197,6 +197,8 @@ bool GpuScene::update(const Pose& pose, const CameraPose& camera, glm::ivec2 siz
   Implementation& s = *implementation_;
   const bool first = !s.instanceBuffer;
   const size_t deformedBefore = s.deformedPrimitives.size(), lightsBefore = s.lights.size();
+  checkStorageBlock(s.device, "draw instances", pose.instances.size() * sizeof(glsl::Instance));
+  checkStorageBlock(s.device, "lights", pose.lights.size() * sizeof(glsl::Light));
 
   for (size_t i = 0; i < s.dynamic.size(); ++i) {
     if (s.dynamic[i].primitive == pose.dynamic[i].primitive) continue;
@@ -225,10 +227,6 @@ bool GpuScene::update(const Pose& pose, const CameraPose& camera, glm::ivec2 siz
   const Environment& environment = s.scene.environment;
   s.frame.environment_rotation = environment.rotation;
   s.frame.environment_scale = environment.scale;
-  s.frame.environment_present = environment ? 1.f : 0.f;
-  s.frame.scene_radius = seen.radius();
-  s.frame.frame_size = size;
-  s.frame.light_count = static_cast<uint32_t>(pose.lights.size());
   s.frame.frame_index = frameIndex;
   setMedium(s.frame, s.scene.medium, pose.bounds);
   s.frameBuffer.update(0, &s.frame, sizeof(s.frame));

@@ -96,7 +96,8 @@ class LIMN_API GpuScene {
   /// Updates the buffers to `pose` as seen by `camera`. Touches what changed in the graph for which import()
   /// was last called (if that still lives: see forget()). Returns true if the structure changed (the number
   /// of lights or of deformed primitives), so that the graph must be rebuilt. Throws as the constructor does
-  /// where deformed and dynamic geometry makes the vertices or triangles too many.
+  /// where instances, lights or joints are too many, or deformed and dynamic geometry makes the vertices or
+  /// triangles too many.
   bool update(const Pose& pose, const CameraPose& camera, glm::ivec2 size, uint32_t frameIndex);
 
   /// Imports the buffers and declares the deform pass (left out, with the reason, when nothing is deformed).

@@ -1,5 +1,6 @@
 #include "core/gpu_scene/pixel_blocks.h"
 
+#include "core/gpu_scene/gpu_geometry.h"
 #include "glsl/surface/pixel_blocks.glsl"
 
 namespace limn::scene {
@@ -12,10 +13,13 @@ constexpr int kBlocksPerSide = 8;
 
 }  // namespace
 
-PixelBlocks::PixelBlocks(frame::FrameGraph& graph, const SceneHandles& handles, const GBuffer& gbuffer,
-                         glm::ivec2 size, const PixelBlockDesc& desc, std::string_view technique)
+PixelBlocks::PixelBlocks(frame::FrameGraph& graph, const gpu::Device& device, const SceneHandles& handles,
+                         const GBuffer& gbuffer, glm::ivec2 size, const PixelBlockDesc& desc,
+                         std::string_view technique)
     : desc_(desc), grid_(size) {
   if (desc.side == 1) return;
+  const size_t listBytes = (1 + static_cast<size_t>(size.x) * static_cast<size_t>(size.y)) * sizeof(uint32_t);
+  checkStorageBlock(device, "pixels that no block sees", listBytes, "picture");
   const glm::ivec2 blocks = glsl::block_count(size, desc.side);
   grid_ = {size.x, blocks.y + size.y};
   std::map<std::string, std::string> defines;
@@ -33,9 +37,8 @@ PixelBlocks::PixelBlocks(frame::FrameGraph& graph, const SceneHandles& handles, 
   surfaces_ = surfaces.write(
       graph.createTexture("block gbuffer", {.format = GL_RGBA32UI, .width = blocks.x, .height = blocks.y}),
       Access::imageStore, "surfaces", "what each block is shaded at");
-  const size_t words = 1 + static_cast<size_t>(size.x) * static_cast<size_t>(size.y);
-  lonePixels_ = surfaces.write(graph.createBuffer("lone pixels", {words * sizeof(uint32_t)}),
-                               Access::storageStore, "LonePixels", "none yet");
+  lonePixels_ = surfaces.write(graph.createBuffer("lone pixels", {listBytes}), Access::storageStore,
+                               "LonePixels", "none yet");
   const auto surfaceProgram =
       surfaces.program({.files = {"glsl/surface/block_surfaces.comp.glsl"}, .defines = defines});
   surfaces.execute([=](frame::PassContext& context) {

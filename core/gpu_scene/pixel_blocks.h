@@ -24,9 +24,11 @@ struct PixelBlockDesc {
 class LIMN_API PixelBlocks {
  public:
   /// Declares the passes, owned by `technique`, that find the blocks' surfaces and the lone pixels of a
-  /// picture of `size` pixels.
-  PixelBlocks(frame::FrameGraph& graph, const SceneHandles& handles, const GBuffer& gbuffer, glm::ivec2 size,
-              const PixelBlockDesc& desc, std::string_view technique);
+  /// picture of `size` pixels. Throws UsageError where these are too many for a list of them in a storage
+  /// buffer.
+  PixelBlocks(frame::FrameGraph& graph, const gpu::Device& device, const SceneHandles& handles,
+              const GBuffer& gbuffer, glm::ivec2 size, const PixelBlockDesc& desc,
+              std::string_view technique);
 
   int side() const { return desc_.side; }
   /// Returns the size of the grid, and of textures with a texel for each item: there is room for every pixel,

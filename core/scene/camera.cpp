@@ -8,13 +8,10 @@
 
 #include "core/base/error.h"
 #include "core/scene/framing.h"
+#include "core/scene/private/finite.h"
 
 namespace limn::scene {
 namespace {
-
-bool finite(const glm::vec3& v) {
-  return std::isfinite(v.x) && std::isfinite(v.y) && std::isfinite(v.z);
-}
 
 void check(const CameraPose& camera, int width, int height) {
   if (width < 1 || height < 1)
@@ -62,7 +59,6 @@ void setCamera(glsl::FrameBlock& frame, const CameraPose& camera, const Bounds& 
 
   const glm::dmat4 worldToClip = viewToClip * worldToView;
   frame.world_to_clip = glm::mat4(worldToClip);
-  frame.clip_to_world = glm::mat4(glm::inverse(worldToClip));
   frame.world_to_view = camera.worldToView;
   frame.camera_position = glm::vec4(glm::vec3(viewToWorld[3]), 1.f);
 

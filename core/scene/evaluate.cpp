@@ -5,11 +5,14 @@
 #include <array>
 #include <cmath>
 #include <iterator>
+#include <string>
 #include <string_view>
 
 #include "core/base/error.h"
+#include "core/base/text.h"
 #include "core/scene/normal_matrix.h"
 #include "core/scene/private/animate.h"
+#include "core/scene/private/finite.h"
 #include "core/scene/private/world_light.h"
 #include "core/scene/scene.h"
 
@@ -295,6 +298,32 @@ void addLights(const Scene& scene, Pose& pose) {
     addNumbered(distantLight(scene.environment.lights[i], scene.environment), "env", i);
 }
 
+/// Throws Error where nodes have grown or gone beyond what floats hold.
+void checkFinite(const Scene& scene, const Pose& pose) {
+  const auto fail = [&](const std::string& what) {
+    const std::string file = scene.file.empty() ? "" : scene.file.string() + ": ";
+    const std::string when = pose.time == 0 ? "" : fmt::format("at {} s ", pose.time);
+    throw Error(oneLine(fmt::format("{}{}{}", file, when, what)));
+  };
+  // Bounds pass over what is no number, as 0 times an infinite scale is.
+  const bool allFinite =
+      std::ranges::all_of(pose.instances, [](const DrawInstance& d) { return finite(d.objectToWorld); }) &&
+      std::ranges::all_of(pose.deformed, [](const Deformation& d) {
+        return std::ranges::all_of(d.joints, [](const glm::mat4& joint) { return finite(joint); });
+      });
+  if (!allFinite || (!pose.bounds.empty() && !std::isfinite(pose.bounds.radius())))
+    fail("the scene's extent is not a finite number; check the scales of its nodes");
+  const auto checkPlace = [&](const glm::vec3& place, const char* kind, const std::string& name) {
+    if (!finite(place))
+      fail(fmt::format("the place of {} '{}' is not finite; check the scales of the nodes above it", kind,
+                       name));
+  };
+  for (std::size_t i = 0; i < pose.lights.size(); ++i)
+    checkPlace(pose.lights[i].position, "light", pose.lightNames[i]);
+  for (const CameraPose& camera : pose.cameras)
+    checkPlace(glm::vec3(camera.worldToView[3]), "camera", camera.name);
+}
+
 }  // namespace
 
 glm::mat4 Transform::matrix() const {
@@ -358,6 +387,7 @@ void evaluate(const Scene& scene, double time, int animation, Pose& pose) {
   addLights(scene, pose);
   pose.bounds = {};
   for (const DrawInstance& instance : pose.instances) pose.bounds.add(instanceBounds(scene, pose, instance));
+  checkFinite(scene, pose);
 }
 
 Pose evaluate(const Scene& scene, double time, int animation) {

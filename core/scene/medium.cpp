@@ -8,7 +8,6 @@ void setMedium(glsl::FrameBlock& frame, const Medium& medium, const Bounds& boun
   const float radius = bounds.radius();
   const bool present = medium.present() && radius > 0;
   frame.medium_extinction = present ? medium.sigmaA + medium.sigmaS : glm::vec3(0);
-  frame.medium_present = present ? 1.f : 0.f;
   frame.medium_scattering = present ? medium.sigmaS : glm::vec3(0);
   frame.medium_asymmetry = present ? medium.g : 0.f;
   frame.medium_to_box = mediumToBox(medium);

@@ -385,7 +385,7 @@ struct Pose {
 
 /// Returns the state at `time` seconds. `animation` none: the first one. Animations repeat (time modulo
 /// duration). Throws UsageError when `time` is not finite or there is no such animation, and Error when a
-/// geometry source returns invalid triangles.
+/// geometry source returns invalid triangles or nodes have grown or gone beyond what floats hold.
 LIMN_API Pose evaluate(const Scene& scene, double time, int animation = kNone);
 /// Writes the same state to `pose`, whose memory is reused: nothing is allocated from the second call for one
 /// scene on.

@@ -158,29 +158,16 @@ void Loader::readSceneExtras() {
   }
 }
 
+Pose Loader::poseAtRest() const {
+  try {
+    return evaluate(scene_, 0);
+  } catch (const Error& error) {
+    fail(error.what());
+  }
+}
+
 void Loader::checkResult() {
-  const Pose pose = evaluate(scene_, 0);
-  const auto isFinite = [](const glm::mat4& matrix) {
-    for (int c = 0; c < 4; ++c)
-      if (glm::any(glm::isnan(matrix[c])) || glm::any(glm::isinf(matrix[c]))) return false;
-    return true;
-  };
-  // Bounds pass over what is no number, as 0 times an infinite scale is.
-  const bool allFinite = std::ranges::all_of(pose.instances, isFinite, &DrawInstance::objectToWorld) &&
-                         std::ranges::all_of(pose.deformed, [&](const Deformation& state) {
-                           return std::ranges::all_of(state.joints, isFinite);
-                         });
-  if (!allFinite || (!pose.bounds.empty() && !std::isfinite(pose.bounds.radius())))
-    fail("the scene's extent is not a finite number; check the scales of its nodes");
-  const auto check = [&](const glm::vec3& place, const char* kind, const std::string& name) {
-    if (!std::isfinite(place.x) || !std::isfinite(place.y) || !std::isfinite(place.z))
-      fail(fmt::format("the place of {} '{}' is not finite; check the scales of the nodes above it", kind,
-                       name));
-  };
-  for (std::size_t i = 0; i < pose.lights.size(); ++i)
-    check(pose.lights[i].position, "light", pose.lightNames[i]);
-  for (const CameraPose& camera : pose.cameras)
-    check(glm::vec3(camera.worldToView[3]), "camera", camera.name);
+  const Pose pose = poseAtRest();
   std::size_t lights = 0;
   for (const Node& node : scene_.nodes) lights += node.light != kNone ? 1 : 0;
   for (const DrawInstance& instance : pose.instances)

@@ -14,7 +14,7 @@ namespace {
 constexpr float kFarRadii = 64;
 
 bool isFar(const Bounds& bounds) {
-  if (bounds.empty() || !std::isfinite(bounds.radius())) return false;
+  if (bounds.empty()) return false;
   const glm::vec3 centre = glm::abs(bounds.centre());
   return std::max({centre.x, centre.y, centre.z}) > kFarRadii * bounds.radius();
 }
@@ -59,12 +59,12 @@ void Loader::rebaseNodes() {
 }
 
 void Loader::moveOrigin() {
-  Bounds bounds = evaluate(scene_, 0).bounds;
+  Bounds bounds = poseAtRest().bounds;
   if (!isFar(bounds)) return;
   scene_.origin = bounds.centre();
   rebaseNodes();
   readMetaballs();
-  bounds = evaluate(scene_, 0).bounds;  // now without the rounding that large coordinates bring
+  bounds = poseAtRest().bounds;  // now without the rounding that large coordinates bring
   scene_.origin = onLattice(scene_.origin + glm::dvec3(bounds.centre()), bounds.radius());
   readMetaballs();
 }

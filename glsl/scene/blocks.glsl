@@ -9,7 +9,6 @@ LIMN_BEGIN
 // The camera and the frame. World space in metres, view space looks down -Z, clip depth in [-1, 1].
 LIMN_UNIFORM_BLOCK(FrameBlock)
 mat4 world_to_clip;
-mat4 clip_to_world;
 mat4 world_to_view;
 vec4 camera_position;  // world, homogeneous
 vec4 view_ray_origin;  // world direction of pixel (0,0)'s centre: direction(x, y) = origin + x * dx + y * dy
@@ -17,17 +16,16 @@ vec4 view_ray_dx;      // (not normalised; its component along the view axis is 
 vec4 view_ray_dy;
 float environment_rotation;  // about +Y, radians
 float environment_scale;
-float environment_present;  // 1, or 0 without an environment
-float scene_radius;         // m
-uvec2 frame_size;           // pixels
-uint light_count;
+uvec2 frame_size;            // pixels
+float scene_radius;          // m
 uint frame_index;
-vec3 medium_extinction;   // sigma_a + sigma_s per metre
-float medium_present;     // 1, or 0 without a medium
-vec3 medium_scattering;   // sigma_s per metre
-float medium_asymmetry;   // g
-Ball medium_ball;         // what the medium fills, m
-mat4 medium_to_box;       // from world space to the unit cube in which a medium with a grid has density
+uvec2 unused_0;
+vec3 medium_extinction;  // sigma_a + sigma_s per metre
+float medium_asymmetry;  // g
+vec3 medium_scattering;  // sigma_s per metre
+float unused_1;
+Ball medium_ball;        // what the medium fills, m
+mat4 medium_to_box;      // from world space to the unit cube in which a medium with a grid has density
 LIMN_END_UNIFORM_BLOCK(frame)
 
 LIMN_FN Medium frame_medium(vec3 extinction, vec3 scattering, float asymmetry, Ball ball) {
@@ -42,7 +40,7 @@ LIMN_FN Medium frame_medium(vec3 extinction, vec3 scattering, float asymmetry, B
 // One drawn copy of a primitive (storage buffer element). The draw instance id equals its index.
 struct Instance {
   mat4 object_to_world;
-  mat4 normal_to_world;  // inverse transpose, upper 3x3
+  mat4 normal_to_world;  // cofactors: the direction of the inverse transpose, upper 3x3
   uint material;
   uint first_vertex;
   uint flags;  // instance_*

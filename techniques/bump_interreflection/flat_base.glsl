@@ -20,7 +20,7 @@ struct FlatBase {
 LIMN_FN Frame flat_base_frame(FlatBase base, Instance placed) {
   vec3 n = normalize(mat3(placed.normal_to_world) * base.normal);
   Frame f = frame_along(n, mat3(placed.object_to_world) * base.tangent);
-  bool mirrored = (placed.flags & 2u) != 0u;
+  bool mirrored = (placed.flags & instance_mirrored) != 0u;
   if ((base.left_handed != 0u) != mirrored) f.b = -f.b;
   return f;
 }

@@ -147,17 +147,20 @@ TEST_F(BumpInterreflectionTest, SixtyFourPathsAreEnoughAndPublishedOnesLoseLight
   }
 }
 
-// An egg-crate that is turned over is itself with u or v mirrored. Mirrored spirals err otherwise than those
-// of what is expected; a relief that lay another way would be lit on its other sides.
+// An egg-crate that is turned over is itself with u or v mirrored, by its coordinates or by its node.
+// Mirrored spirals err otherwise than those of what is expected; a relief that lay another way would be lit
+// on its other sides.
 TEST_F(BumpInterreflectionTest, MirroredCoordinatesMirrorTheRelief) {
   const relief::HeightField turnedOver = eggCrate(-0.141);
   const std::vector<double> exact =
       bounced(turnedOver, relief::traceBounces(turnedOver, relief::BounceDirections::ownFrame, 1024), 1);
-  scene::Scene u = bumps(slantedLight(), eggCrate()), v = u;
+  scene::Scene u = bumps(slantedLight(), eggCrate()), v = u, node = u;
   moveCoordinates(u, [](const glm::vec2& uv) { return glm::vec2(1 - uv.x, uv.y); });
   moveCoordinates(v, [](const glm::vec2& uv) { return glm::vec2(uv.x, 1 - uv.y); });
-  for (const auto& [name, scene] : {std::pair("u mirrored", u), std::pair("v mirrored", v),
-                                    std::pair("turned over", bumps(slantedLight(), turnedOver))})
+  node.nodes[0].transform.scale.x = -1;
+  for (const auto& [name, scene] :
+       {std::pair("u mirrored", u), std::pair("v mirrored", v), std::pair("mirrored by its node", node),
+        std::pair("turned over", bumps(slantedLight(), turnedOver))})
     for (const std::string& space : kSpaces) {
       SCOPED_TRACE(name + (", " + space));
       const Difference d =

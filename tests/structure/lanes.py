@@ -2,7 +2,7 @@
 
 No comment of a member says what its lanes are ("x: type, y: flags"), and nothing reads the fourth lane of a vector that a
 block, or a struct in a buffer, holds: it would be another thing than the first three. Colours have alpha (.a); texels and
-the vectors of functions may have lanes.
+the vectors of functions may have lanes. Flags are asked for by their constants, not by the numbers that these have.
 """
 import pathlib
 import re
@@ -18,6 +18,7 @@ LANES = re.compile(r"//[/<]*\s*(?:[^;,.(\n]*[;,.(]\s+)*[xyzw]{1,4}(?:, [xyzw])*:
 HELD = re.compile(r"\b(?:buffer|uniform) \w+ \{\s*(?:const )?(\w+) \w+(?:\[\w*\])?;")  # structs that memory holds
 VECTOR = re.compile(r"^[^/\n]*?\b[iu]?vec4 (\w+);", re.MULTILINE)
 PACKED = re.compile(r"\.(info)\.[xyzw]\b")
+FLAG = re.compile(r"\bflags\s*&\s*\d\w*")
 
 
 def files(*suffixes):
@@ -45,5 +46,7 @@ for name, text in texts.items():
     for pattern in (fourth, PACKED):
         for read in pattern.finditer(text):
             problems.append(f"{name}:{line_of(text, read.start())}: reads a lane instead of a name: {read[0]}")
+    for read in FLAG.finditer(text):
+        problems.append(f"{name}:{line_of(text, read.start())}: a flag by its number instead of its constant: {read[0]}")
 print("\n".join(problems))
 sys.exit(1 if problems or not vectors else 0)

@@ -57,6 +57,12 @@ class SceneFiles : public testing::Test {
   std::filesystem::path folder_;
 };
 
+/// The finest level of a texture.
+inline const scene::TextureImage::Level& imageOf(const scene::Scene& scene,
+                                                 const scene::TextureRef& texture) {
+  return scene.images.at(static_cast<std::size_t>(texture.image)).levels.at(0);
+}
+
 inline void expectNear(const glm::vec3& a, const glm::vec3& b, float tolerance = 1e-5f) {
   for (int c = 0; c < 3; ++c) EXPECT_NEAR(a[c], b[c], tolerance) << "component " << c;
 }

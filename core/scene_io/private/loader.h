@@ -107,6 +107,8 @@ class Loader {
   void readSceneExtras();
   void readMedium(const tinygltf::Value& medium);
   void readSmoke(const tinygltf::Value& smoke, const std::string& what);
+  /// Returns the pose at the time 0. Throws Error that names the file.
+  Pose poseAtRest() const;
   void checkResult();
 
   // loader_files.cpp

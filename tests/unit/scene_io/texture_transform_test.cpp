@@ -49,10 +49,6 @@ constexpr const char* kMetalRough = "/pbrMetallicRoughness/metallicRoughnessText
 constexpr const char* kNormal = "/normalTexture";
 constexpr const char* kEmissive = "/emissiveTexture";
 
-const scene::TextureImage::Level& imageOf(const Scene& scene, const scene::TextureRef& texture) {
-  return scene.images.at(static_cast<std::size_t>(texture.image)).levels.at(0);
-}
-
 const std::vector<glm::vec2>& uvsOf(const Scene& scene) {
   return scene.meshes.at(0).primitives.at(0).uvs;
 }
