@@ -176,4 +176,8 @@ session::LightEdit placedBy(const GizmoHandle& handle, const GizmoPose& pose, co
   return edit;
 }
 
+float leastSide(float radius) {
+  return std::clamp(1e-4f * radius, 1e-9f, 1e-4f);
+}
+
 }  // namespace limn::app

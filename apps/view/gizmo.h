@@ -68,4 +68,9 @@ GizmoPose dragged(const ScreenCamera& screen, const GizmoDrag& drag, const glm::
 session::LightEdit placedBy(const GizmoHandle& handle, const GizmoPose& pose, const session::LightEdit& now,
                             session::LightEdit edit, const glm::dvec3& origin, float radius);
 
+/// Returns the least side of a light, metres, that a hand may give it in a scene of that radius: a
+/// ten-thousandth of the radius, but no more than a tenth of a millimetre and no less than --set-light
+/// accepts.
+float leastSide(float radius);
+
 }  // namespace limn::app

@@ -46,15 +46,16 @@ bool lightSize(const LightFacts& light, float radius, session::LightEdit& edit) 
   nameCell(
       directional ? "angle, rad" : "size, m",
       directional ? "Angular diameter" : "Sides; a light that had none becomes a rectangle that faces -z");
+  const float least = directional ? 1e-4f : leastSide(radius);
   glm::vec2 size = edit.size.value_or(*light.now.size);
   const bool resized = directional
-                           ? ImGui::DragFloat("##size", &size.x, 0.001f, 1e-4f, 1, "%.4f", kClamped)
-                           : ImGui::DragFloat2("##size", &size.x, 0.002f * radius, 1e-4f, kMostInSetting,
+                           ? ImGui::DragFloat("##size", &size.x, 0.001f, least, 1, "%.4f", kClamped)
+                           : ImGui::DragFloat2("##size", &size.x, 0.002f * radius, least, kMostInSetting,
                                                lengthFormat(radius).c_str(), kClamped);
   if (!resized) return false;
   const bool square = directional || (!edit.size && *light.now.size == glm::vec2(0));
   edit.size =
-      glm::max(square ? glm::vec2(std::max(size.x, directional ? 0.f : size.y)) : size, glm::vec2(1e-4f));
+      glm::max(square ? glm::vec2(std::max(size.x, directional ? 0.f : size.y)) : size, glm::vec2(least));
   return true;
 }
 

@@ -18,6 +18,7 @@ constexpr const char* kTitle = "Open a scene or an environment";
 
 void ViewerWindow::browse(const fs::path& folder) {
   browsing_ = listFolder(folder);
+  dismissed_ = false;
   folderText_ = browsing_->folder.string();
 }
 
@@ -66,7 +67,7 @@ void ViewerWindow::openDialog() {
   ImGui::BeginChild("entries");
   browsedEntries();
   ImGui::EndChild();
-  if (!open || ImGui::IsKeyPressed(ImGui::GetKeyIndex(ImGuiKey_Escape))) browsing_.reset();
+  if (!open || dismissed_) browsing_.reset();
   if (!browsing_) ImGui::CloseCurrentPopup();
   ImGui::EndPopup();
 }

@@ -18,6 +18,7 @@ Orbit::Orbit(const scene::CameraPose& camera, const scene::Bounds& bounds) : nea
   const glm::mat4 toWorld = glm::inverse(camera.worldToView);
   const glm::vec3 from(toWorld[3]), forward = -glm::vec3(toWorld[2]);
   distance_ = std::max({glm::dot(bounds.centre() - from, forward), kNearest * bounds.radius(), 2 * near_});
+  farthest_ = std::max(farthest_, 10 * distance_);
   target_ = from + distance_ * forward;
   azimuth_ = std::atan2(-forward.x, -forward.z);
   elevation_ = std::clamp(std::asin(std::clamp(-forward.y, -1.f, 1.f)), -kSteepest, kSteepest);
@@ -38,7 +39,7 @@ void Orbit::turn(float right, float up) {
 }
 
 void Orbit::approach(float factor) {
-  distance_ = std::clamp(distance_ * factor, 2 * near_, 1e9f);
+  distance_ = std::clamp(distance_ * factor, 2 * near_, farthest_);
 }
 
 void Orbit::pan(float rightwards, float up) {

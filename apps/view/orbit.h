@@ -17,7 +17,7 @@ class Orbit {
 
   /// Turns the camera around the point, radians.
   void turn(float right, float up);
-  /// Multiplies the distance by a factor.
+  /// Multiplies the distance by a factor, within bounds.
   void approach(float factor);
   /// Moves the point and the camera together, in fractions of the distance.
   void pan(float right, float up);
@@ -38,6 +38,7 @@ class Orbit {
 
   glm::vec3 target_{0};
   float distance_ = 1, azimuth_ = 0, elevation_ = 0, near_ = 0.01f;
+  float farthest_ = 1e9f;  ///< that the distance gets, of larger scenes ten times what it was at first
 };
 
 }  // namespace limn::app

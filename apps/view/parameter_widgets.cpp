@@ -3,14 +3,19 @@
 #include <fmt/format.h>
 #include <imgui.h>
 
+#include <algorithm>
+#include <limits>
+
 #include "apps/view/viewer_style.h"
 
 namespace limn::app {
 namespace {
 
-/// As ImGui prints a slider's value, with the unit.
+/// As ImGui prints a slider's value, with the unit, which is text to the letter.
 std::string format(const char* number, const Parameter& p) {
-  return *p.unit ? fmt::format("{} {}", number, p.unit) : number;
+  std::string text = *p.unit ? fmt::format("{} ", number) : number;
+  for (const char* c = p.unit; *c; ++c) text.append(*c == '%' ? size_t{2} : size_t{1}, *c);
+  return text;
 }
 
 /// What the parameter does, and within which range.
@@ -24,6 +29,22 @@ ImGuiSliderFlags sliderFlags(const Parameter& p) {
   return ImGuiSliderFlags_AlwaysClamp | (p.logarithmic ? ImGuiSliderFlags_Logarithmic : 0);
 }
 
+/// The part of a range that sliders can show: ImGui ends the program at one over more than half of the
+/// numbers.
+template <class Number>
+ParameterRange sliderRange(const Parameter& p) {
+  constexpr double most = static_cast<double>(std::numeric_limits<Number>::max()) / 2;
+  return {std::clamp(p.range.low, -most, most), std::clamp(p.range.high, -most, most)};
+}
+
+/// The shortest text that is the same float. At the ends of the slider it is that of the range, which may lie
+/// between two floats, and beyond which ImGui rounds to the digits that are shown.
+std::string realText(const ParameterRange& range, float value) {
+  if (value <= static_cast<float>(range.low)) return fmt::format("{}", range.low);
+  if (value >= static_cast<float>(range.high)) return fmt::format("{}", range.high);
+  return fmt::format("{}", value);
+}
+
 /// The new value as the command line would say it; empty: unchanged.
 std::string widget(const Parameter& p, const ParameterValues& values) {
   ImGui::SetNextItemWidth(-1);
@@ -34,16 +55,18 @@ std::string widget(const Parameter& p, const ParameterValues& values) {
     }
     case ParameterType::integer: {
       int value = values.integer(p.name);
-      const int low = static_cast<int>(p.range.low), high = static_cast<int>(p.range.high);
+      const ParameterRange range = sliderRange<int>(p);
+      const int low = static_cast<int>(range.low), high = static_cast<int>(range.high);
       return ImGui::SliderInt("##value", &value, low, high, format("%d", p).c_str(), sliderFlags(p))
                  ? std::to_string(value)
                  : "";
     }
     case ParameterType::real: {
       float value = values.real(p.name);
-      const auto low = static_cast<float>(p.range.low), high = static_cast<float>(p.range.high);
+      const ParameterRange range = sliderRange<float>(p);
+      const auto low = static_cast<float>(range.low), high = static_cast<float>(range.high);
       return ImGui::SliderFloat("##value", &value, low, high, format("%.4g", p).c_str(), sliderFlags(p))
-                 ? fmt::format("{}", value)
+                 ? realText(range, value)
                  : "";
     }
     case ParameterType::choice: {

@@ -78,7 +78,7 @@ struct SceneFacts {
   bool environment = false;                ///< it has one: chosen, its own, or that of the default lights
   bool ownEnvironment = false;  ///< that of its file, which lights may stand for as for a chosen one
   bool animated = false;
-  double seconds = 0;  ///< of the animation; 0: endless
+  double seconds = 0;  ///< of the animation; 0: endless, or longer than times are accepted
 };
 
 struct LightFacts {

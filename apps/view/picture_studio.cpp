@@ -61,9 +61,12 @@ std::shared_ptr<const SceneFacts> factsOf(const session::View& view, const Scene
   const auto& animations = view.scene.animations;
   const bool endless = !view.scene.dynamic.empty() || view.scene.medium.smoke;
   facts->animated = !animations.empty() || endless;
-  if (!animations.empty() && !endless)
-    facts->seconds =
+  if (!animations.empty() && !endless) {
+    const double duration =
         static_cast<double>(animations[static_cast<size_t>(std::max(view.animation, 0))].duration);
+    // One that is longer than times may be is never seen to its end, for which no slider has room.
+    if (duration <= questionField("time").range.high) facts->seconds = duration;
+  }
   return facts;
 }
 
@@ -281,10 +284,11 @@ bool PictureStudio::follow(const PictureOrder& order, const std::function<bool()
     while (wanted < kLargestReduction && wholeMs_ / (wanted * wanted) > kFluentMs) wanted *= 2;
   PictureOrder before = rendered_.value_or(order);
   before.moving = order.moving;  // which alone does not change a whole picture
-  const bool again = !rendered_ || wanted != reduction_ || !same(order, before);
+  // Of what is shown already no smaller picture is needed.
+  const bool again = !rendered_ || wanted < reduction_ || !same(order, before);
   rendered_ = order;
-  reduction_ = wanted;
   if (!again) return false;
+  reduction_ = wanted;
   facts_.settled = compared_ = metered_ = false;
   facts_.metrics.reset();
   facts_.exposureEv = order.tone.exposureEv;

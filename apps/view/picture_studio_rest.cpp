@@ -123,7 +123,8 @@ PictureOrder PictureStudio::exposed(PictureOrder order) const {
 bool PictureStudio::meter(const PictureOrder& order) {
   if (!order.automaticExposure || order.moving || metered_ || !facts_.picture.problem.empty()) return false;
   metered_ = true;
-  return std::exchange(exposureEv_, automaticExposure(picture_->read())) != exposureEv_;
+  const float before = std::exchange(exposureEv_, automaticExposure(picture_->read()));
+  return exposureEv_ != before;
 }
 
 /// Shows a picture at rest with all its samples in each pixel and all frames over which techniques average.
@@ -142,7 +143,6 @@ bool PictureStudio::smooth(const PictureOrder& order, const std::function<bool()
     } catch (const Error& error) {
       failed = true;
       shot.problem = error.what();
-      picture.forget();  // its renderer may have half of a frame
     }
     if (!image) return false;
     shot.image = std::make_shared<const Image8>(toneMapped(*image, order.tone));
@@ -257,6 +257,7 @@ void PictureStudio::write(const SaveOrder& order, const std::filesystem::path& f
   if (picture.of != facts_.scene) throw Error("not saved: another scene was opened meanwhile");
   checkApart({file}, {picture.scene.scene, picture.scene.environment});
   Image image = follows ? renderNext(picture) : renderWhole(picture);
+  checkFinite(image, file, picture.scene.term, namesOf(picture.techniques));
   sign(image, order.command);
   if (file.has_parent_path()) createFolder(file.parent_path());
   ToneMapping tone = picture.tone;

@@ -70,12 +70,20 @@ std::optional<Image> ShownPicture::read(const scene::CameraPose& camera, int aa,
     });
   } catch (const Cancelled&) {
     return std::nullopt;
+  } catch (...) {
+    forget();  // the renderer may have half of a frame
+    throw;
   }
 }
 
 Image ShownPicture::next(const scene::CameraPose& camera, double time, int animation, int aa) {
-  renderer_.setTime(time, animation);
-  return render::supersample(renderer_, camera, settings_.size, aa);
+  try {
+    renderer_.setTime(time, animation);
+    return render::supersample(renderer_, camera, settings_.size, aa);
+  } catch (...) {
+    forget();  // as in read()
+    throw;
+  }
 }
 
 bool ShownPicture::reloadShaders() {

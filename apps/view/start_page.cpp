@@ -1,8 +1,6 @@
 // What the window shows before a scene is opened: how to open one.
 #include <imgui.h>
 
-#include <algorithm>
-
 #include "apps/view/viewer_style.h"
 #include "apps/view/viewer_window.h"
 
@@ -26,8 +24,7 @@ void ViewerWindow::startPage() {
   }
   ImGui::Spacing();
   wrapped(ownScenes_.empty() ? "limn's own scenes are not installed." : "Or take one of limn's own scenes:");
-  const float column = scaled(200);
-  const int columns = std::max(1, static_cast<int>(ImGui::GetContentRegionAvail().x / column));
+  const int columns = tableColumns(ImGui::GetContentRegionAvail().x, scaled(200));
   if (!ownScenes_.empty() && ImGui::BeginTable("scenes", columns)) {
     for (const std::string& name : ownScenes_) {
       ImGui::TableNextColumn();

@@ -120,7 +120,11 @@ void ViewerWindow::listen() {
     if (action == GLFW_REPEAT && !again) return;
     if (pressed.control && pressed.key == GLFW_KEY_Q) glfwSetWindowShouldClose(w, GLFW_TRUE);
     if (pressed.control && pressed.key == GLFW_KEY_O) self.browse();
-    self.pressed_.push_back(pressed);
+    // The dialog has the keyboard while it is open.
+    if (self.browsing_)
+      self.dismissed_ = self.dismissed_ || pressed.key == GLFW_KEY_ESCAPE;
+    else
+      self.pressed_.push_back(pressed);
   });
   glfwSetDropCallback(window, [](GLFWwindow* w, int count, const char** files) {
     auto& self = *static_cast<ViewerWindow*>(glfwGetWindowUserPointer(w));

@@ -54,8 +54,9 @@ void ViewerWindow::drawColourBar(glm::vec2 corner, float width) const {
   const DifferenceScale scale;
   const auto number = [&](float part, const std::string& text) {
     const float wide = ImGui::CalcTextSize(text.c_str()).x;
-    draw.AddText(im(corner + glm::vec2(std::clamp(part * width - wide / 2, 0.f, width - wide), height)),
-                 0xffffffff, text.c_str());
+    const float most = std::max(width - wide, 0.f);  // of a narrow picture there is no room for it
+    draw.AddText(im(corner + glm::vec2(std::clamp(part * width - wide / 2, 0.f, most), height)), 0xffffffff,
+                 text.c_str());
   };
   number(0, fmt::format("-{:g} too dark", scale.most));
   number(0.5f, fmt::format("within {:g}", scale.least));
@@ -134,7 +135,6 @@ void ViewerWindow::press(const KeyPress& pressed) {
 }
 
 /// What is pressed while the first scene is being opened waits for it, unless it is typed into a text field.
-/// Behind the dialog only function keys are answered.
 void ViewerWindow::handleKeys() {
   if (ImGui::GetIO().WantTextInput) pressed_.clear();
   if (!facts_->scene) {
@@ -142,8 +142,7 @@ void ViewerWindow::handleKeys() {
     if (!opening_) pressed_.clear();
     return;
   }
-  for (const KeyPress& pressed : pressed_)
-    if (!browsing_ || (pressed.key >= GLFW_KEY_F1 && pressed.key <= GLFW_KEY_F25)) press(pressed);
+  for (const KeyPress& pressed : pressed_) press(pressed);
   pressed_.clear();
 }
 

@@ -2,6 +2,7 @@
 
 #include <imgui.h>
 
+#include <algorithm>
 #include <cmath>
 #include <fstream>
 
@@ -112,6 +113,11 @@ bool beginRows(const char* name) {
 
 void endRows() {
   ImGui::EndTable();
+}
+
+int tableColumns(float room, float column) {
+  constexpr float kMost = 64;  // ImGui ends the program at a table with more
+  return static_cast<int>(std::clamp(room / column, 1.f, kMost));
 }
 
 void nameCell(const char* name, const std::string& explanation) {

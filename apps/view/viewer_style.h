@@ -41,6 +41,9 @@ void nameCell(const char* name, const std::string& explanation);
 /// Begins such a table and returns whether it is shown; endRows() ends one that is.
 bool beginRows(const char* name);
 void endRows();
+/// Returns into how many columns a table that wide divides, each at least `column` wide: 1 to as many as
+/// ImGui has.
+int tableColumns(float room, float column);
 
 /// Returns the texture as ImGui identifies it.
 void* textureId(const gpu::Texture& texture);

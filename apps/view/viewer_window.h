@@ -157,6 +157,7 @@ class ViewerWindow {
   std::map<std::string, std::string> aboutScenes_;  ///< what limn's own are for
   std::vector<std::filesystem::path> recentScenes_;
   std::optional<FolderListing> browsing_;  ///< what the dialog shows while it is open
+  bool dismissed_ = false;                 ///< Escape was pressed in the dialog
   Beside beside_ = Beside::nothing;
   float split_ = 0.5f;  ///< of the picture's width
   bool splitDragged_ = false;

@@ -1,17 +1,14 @@
 #include "assets/generator/gltf_writer.h"
 
-#include <fmt/format.h>
-
 #include <algorithm>
 #include <cmath>
 #include <cstring>
-#include <fstream>
 #include <glm/gtc/type_ptr.hpp>
 #include <limits>
 #include <nlohmann/json.hpp>
 #include <set>
-#include <stdexcept>
 
+#include "core/base/file.h"
 #include "core/brdf/measured_file.h"
 
 namespace limn::assets {
@@ -341,39 +338,22 @@ class Writer {
   std::set<std::string> extensions_;
 };
 
-template <class Write>
-void writeBeside(const std::filesystem::path& file, const Write& write) {
-  std::filesystem::path beside = file;
-  beside.replace_filename(file.stem().string() + ".part" + file.extension().string());
-  write(beside);
-  std::filesystem::rename(beside, file);
-}
-
 }  // namespace
 
 void writeScene(const Scene& scene, const std::filesystem::path& folder) {
   std::filesystem::create_directories(folder);
   for (const Texture& texture : scene.textures) {
-    writeBeside(folder / (texture.name + ".png"), [&](const auto& file) {
-      if (texture.heights) return writeHeights(texture.image, file);
+    const std::filesystem::path file = folder / (texture.name + ".png");
+    if (texture.heights)
+      writeHeights(texture.image, file);
+    else
       writePng(texture.image, texture.linear, file);
-    });
   }
-  if (scene.environment) {
-    writeBeside(folder / "environment.exr", [&](const auto& file) { writeExr(*scene.environment, file); });
-  }
+  if (scene.environment) writeExr(*scene.environment, folder / "environment.exr");
   for (const Scene::Measured& measured : scene.measured) {
     brdf::writeMeasured(folder / measured.file, measured.table);
   }
-  const std::string bytes = Writer(scene).binary();
-  writeBeside(folder / (scene.name + ".glb"), [&](const auto& file) {
-    std::ofstream out(file, std::ios::binary);
-    out.write(bytes.data(), static_cast<std::streamsize>(bytes.size()));
-    out.close();
-    if (!out)
-      throw std::runtime_error(
-          fmt::format("cannot write {}: is the folder writable and the disk not full?", file.string()));
-  });
+  writeTextFile(folder / (scene.name + ".glb"), Writer(scene).binary());
 }
 
 }  // namespace limn::assets

@@ -7,6 +7,8 @@
 #include <cmath>
 #include <stdexcept>
 
+#include "core/base/file.h"
+
 namespace limn::assets {
 namespace {
 
@@ -31,15 +33,17 @@ float encodeSrgb(float x) {
 template <class T>
 void write(const std::filesystem::path& file, int width, int height, int channels, OIIO::TypeDesc type,
            const std::vector<T>& data) {
+  TemporaryFile whole(file);
   const std::unique_ptr<OIIO::ImageOutput> out = OIIO::ImageOutput::create(file.string());
   OIIO::ImageSpec spec(width, height, channels, type);
   if (type == OIIO::TypeDesc::FLOAT) spec.attribute("compression", "zip");
   spec.attribute("DateTime", "1970:01:01 00:00:00");  // EXR files carry a date: the same bytes every time
-  if (!out || !out->open(file.string(), spec) ||
+  if (!out || !out->open(whole.path().string(), spec) ||
       !out->write_image(OIIO::BaseTypeFromC<T>::value, data.data()) || !out->close()) {
     throw std::runtime_error(
         fmt::format("cannot write {}: {}", file.string(), out ? out->geterror() : OIIO::geterror()));
   }
+  whole.keep();
 }
 
 /// The tile under `uv`: its number and the distance to its edge in tiles.

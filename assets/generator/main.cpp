@@ -3,12 +3,11 @@
 
 #include <algorithm>
 #include <exception>
-#include <fstream>
 #include <nlohmann/json.hpp>
-#include <stdexcept>
 
 #include "assets/generator/gltf_writer.h"
 #include "assets/scenes/scenes.h"
+#include "core/base/file.h"
 
 namespace {
 
@@ -57,9 +56,7 @@ void writeAbout(const std::filesystem::path& folder) {
   for (const SceneEntry& entry : allScenes()) scenes[std::string(entry.name)] = entry.about;
   for (const EnvironmentEntry& entry : allEnvironments()) environments[std::string(entry.name)] = entry.about;
   const nlohmann::ordered_json about{{"scenes", scenes}, {"environments", environments}};
-  std::ofstream out(folder / "about.json");
-  out << about.dump(1) << '\n';
-  if (!out.flush()) throw std::runtime_error((folder / "about.json").string() + " cannot be written");
+  limn::writeTextFile(folder / "about.json", about.dump(1) + "\n");
 }
 
 }  // namespace

@@ -98,7 +98,7 @@ glm::mat4 placed(const glm::mat3& axes, const glm::vec3& position, const AtRest&
   return frameOf(kept ? axes * scale : axes, position);
 }
 
-void apply(scene::Scene& scene, const scene::Pose& pose, int light, const std::string& name,
+void apply(scene::Scene& scene, const scene::Pose& pose, int animation, int light, const std::string& name,
            const LightEdit& edit, int index) {
   const glsl::Light& now = pose.lights[static_cast<size_t>(light)];
   scene::Node& node = scene.nodes[static_cast<size_t>(index)];
@@ -110,7 +110,7 @@ void apply(scene::Scene& scene, const scene::Pose& pose, int light, const std::s
   if (edit.position || edit.rotation) {
     node.placed = placed(edit.rotation ? rotationOf(*edit.rotation) : axesOf(now),
                          edit.position ? glm::vec3(*edit.position - scene.origin) : now.position,
-                         atRest(scene, pose, light, index));
+                         atRest(scene, pose, animation, light, index));
   }
   if (edit.size && directional) source.angle = edit.size->x;
   if (edit.size && !directional) node.limnArea = *edit.size;
@@ -153,13 +153,13 @@ std::vector<std::string> printed(const LightEdits& edits) {
   return settings;
 }
 
-void applyLightEdits(scene::Scene& scene, const scene::Pose& pose, const LightEdits& edits) {
+void applyLightEdits(scene::Scene& scene, const scene::Pose& pose, const LightEdits& edits, int animation) {
   for (const auto& [name, edit] : edits) {
     const int light = findNamed("light", name, pose.lightNames);
     if (const int node = nodeOf(scene, pose, light); node != scene::kNone)
-      apply(scene, pose, light, name, edit, node);
+      apply(scene, pose, animation, light, name, edit, node);
     else if (const auto mesh = meshLightOf(scene, pose, light))
-      applyToMesh(scene, pose, light, *mesh, edit);
+      applyToMesh(scene, pose, animation, light, *mesh, edit);
     else
       throw UsageError(fmt::format(
           "--set-light {}: only lights of nodes and emissive quads can be changed; this one is {}", name,
@@ -184,10 +184,11 @@ bool changeMeshes(const scene::Pose& pose, const LightEdits& edits) {
 }
 
 bool isEditable(const scene::Scene& scene, const scene::Pose& pose, int index) {
-  const auto first = std::ranges::find(pose.lightNames, pose.lightNames[static_cast<size_t>(index)]);
-  if (first - pose.lightNames.begin() != index) return false;
   if (withoutArea(pose.lights[static_cast<size_t>(index)])) return false;
-  return nodeOf(scene, pose, index) != scene::kNone || meshLightOf(scene, pose, index);
+  if (nodeOf(scene, pose, index) == scene::kNone && !meshLightOf(scene, pose, index)) return false;
+  // Last, since parts of an environment, of which there may be hundreds, do not come this far.
+  const auto first = std::ranges::find(pose.lightNames, pose.lightNames[static_cast<size_t>(index)]);
+  return first - pose.lightNames.begin() == index;
 }
 
 LightEdit describeLight(const scene::Scene& scene, const scene::Pose& pose, int index) {

@@ -41,11 +41,12 @@ LIMN_API std::vector<std::string> printed(const LightEdits& edits);
 /// that its emission can be changed alone. To be called once, after the scene is loaded.
 LIMN_API void giveOwnMaterials(scene::Scene& scene);
 
-/// Changes the lights of `scene`, which must be those of its file. `pose` is the pose of that scene and is
-/// not changed; what edits leave of a light's placement is that of `pose` (followTime). A mesh that has no
-/// area, neither at rest nor in `pose`, is left as it is. Throws UsageError for a light that does not exist
-/// or cannot be changed (isEditable), and for a property that the light does not have.
-LIMN_API void applyLightEdits(scene::Scene& scene, const scene::Pose& pose, const LightEdits& edits);
+/// Changes the lights of `scene`, which must be those of its file. `pose` is the pose of that scene in
+/// `animation` and is not changed; what edits leave of a light's placement is that of `pose` (followTime). A
+/// mesh that has no area, neither at rest nor in `pose`, is left as it is. Throws UsageError for a light that
+/// does not exist or cannot be changed (isEditable), and for a property that the light does not have.
+LIMN_API void applyLightEdits(scene::Scene& scene, const scene::Pose& pose, const LightEdits& edits,
+                              int animation = scene::kNone);
 /// Says whether an edit sets a part of a light's placement and leaves the other one to animations, so that
 /// the edits must be applied again at each time.
 LIMN_API bool followTime(const LightEdits& edits);

@@ -41,9 +41,9 @@ bool withoutArea(const glsl::Light& light) {
   return (light.flags & glsl::light_flag_geometry) != 0 && light.length_u == 0;
 }
 
-bool appearsLater(const scene::Scene& scene) {
+bool appearsLater(const scene::Scene& scene, int animation) {
   if (scene.animations.empty()) return false;
-  const scene::Pose start = scene::evaluate(scene, 0);
+  const scene::Pose start = scene::evaluate(scene, 0, animation);
   std::ptrdiff_t parts = 0;
   for (const scene::DrawInstance& drawn : start.instances)
     if (drawn.node != scene::kNone)
@@ -53,10 +53,10 @@ bool appearsLater(const scene::Scene& scene) {
          });
 }
 
-AtRest atRest(const scene::Scene& scene, const scene::Pose& pose, int light, int node) {
+AtRest atRest(const scene::Scene& scene, const scene::Pose& pose, int animation, int light, int node) {
   const glsl::Light& now = pose.lights[at(light)];
   if (!scene.animations.empty()) {
-    const scene::Pose start = scene::evaluate(scene, 0);
+    const scene::Pose start = scene::evaluate(scene, 0, animation);
     // Meshes may be no lights at some times, or have no area; lights of nodes always are.
     if ((now.flags & glsl::light_flag_geometry) == 0)
       return {start.lights[at(light)], start.nodeToWorld[at(node)]};
@@ -104,15 +104,15 @@ std::optional<MeshLight> meshLightOf(const scene::Scene& scene, const scene::Pos
   return MeshLight{drawn.node, mesh.primitives[at(emitter)].material, holders > 1};
 }
 
-void applyToMesh(scene::Scene& scene, const scene::Pose& pose, int light, const MeshLight& mesh,
-                 const LightEdit& edit) {
+void applyToMesh(scene::Scene& scene, const scene::Pose& pose, int animation, int light,
+                 const MeshLight& mesh, const LightEdit& edit) {
   if (mesh.shared && (edit.size || edit.colour || edit.intensity))
     throw UsageError(
         fmt::format("--set-light {}: several nodes share its mesh, which has one size and emission; position "
                     "and rotation are accepted",
                     pose.lightNames[at(light)]));
   const glsl::Light& now = pose.lights[at(light)];
-  const AtRest rest = atRest(scene, pose, light, mesh.node);
+  const AtRest rest = atRest(scene, pose, animation, light, mesh.node);
   if (withoutArea(rest.light)) return;
   const glm::mat3 axes = axesOf(withoutArea(now) ? rest.light : now);
   const glm::vec2 restSize = sizeOf(rest.light), size = edit.size.value_or(restSize);

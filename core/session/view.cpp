@@ -211,7 +211,7 @@ void relight(View& view, const SceneQuestion& question) {
     scene::evaluate(scene, view.time, view.animation, view.pose);
   }
   if (question.lightSettings.empty()) return;
-  applyLightEdits(scene, view.pose, parseLightEdits(question.lightSettings));
+  applyLightEdits(scene, view.pose, parseLightEdits(question.lightSettings), view.animation);
   scene::evaluate(scene, view.time, view.animation, view.pose);
 }
 
@@ -233,10 +233,10 @@ void moveTo(View& view, const SceneQuestion& question, double time) {
 }
 
 /// --sigma-a, --sigma-s and --g.
-static void fillMedium(const SceneQuestion& question, scene::Scene& scene) {
-  scene::Medium& medium = scene.medium;
+static void fillMedium(const SceneQuestion& question, View& view) {
+  scene::Medium& medium = view.scene.medium;
   if (!question.sigmaA.empty() || !question.sigmaS.empty()) {
-    const scene::Bounds bounds = scene::evaluate(scene, 0).bounds;
+    const scene::Bounds bounds = scene::evaluate(view.scene, 0, view.animation).bounds;
     const double diameter = bounds.empty() ? 0 : 2.0 * bounds.radius();
     if (!question.sigmaA.empty()) medium.sigmaA = parseCoefficient("--sigma-a", question.sigmaA, diameter);
     if (!question.sigmaS.empty()) medium.sigmaS = parseCoefficient("--sigma-s", question.sigmaS, diameter);
@@ -245,17 +245,18 @@ static void fillMedium(const SceneQuestion& question, scene::Scene& scene) {
 }
 
 /// --grid.
-static void chooseGrid(const std::string& grid, scene::Scene& scene) {
-  if (!scene.medium.present())
+static void chooseGrid(const std::string& grid, View& view) {
+  scene::Medium& medium = view.scene.medium;
+  if (!medium.present())
     throw UsageError(
         fmt::format("--grid {}: the scene has no medium; give it --sigma-s or --sigma-a, too", grid));
-  scene.medium.grid.reset();
-  scene.medium.smoke.reset();
+  medium.grid.reset();
+  medium.smoke.reset();
   if (grid == "none") return;
   if (grid == "smoke")
-    scene.medium.smoke = scene::smokeIn(scene::evaluate(scene, 0).bounds);
+    medium.smoke = scene::smokeIn(scene::evaluate(view.scene, 0, view.animation).bounds);
   else
-    scene::setGrid(scene.medium, scene::readDensityGrid(grid, {}, scene.origin));
+    scene::setGrid(medium, scene::readDensityGrid(grid, {}, view.scene.origin));
 }
 
 /// The camera of a scene without one, which looks at what stands on the floor, and --floor.
@@ -275,13 +276,13 @@ View open(const SceneQuestion& question, const Warn& warn) {
   view.scene = scene::load(findScene(question.scene));
   if (question.displaced == "on") view.scene = scene::displaced(std::move(view.scene));
   addEnvironment(question, view.scene);
-  fillMedium(question, view.scene);
-  if (!question.grid.empty()) chooseGrid(question.grid, view.scene);
   if (!question.animation.empty()) {
     std::vector<std::string> names;
     for (const auto& animation : view.scene.animations) names.push_back(animation.name);
     view.animation = findNamed("animation", question.animation, names);
   }
+  fillMedium(question, view);
+  if (!question.grid.empty()) chooseGrid(question.grid, view);
   frame(question, view);
   giveOwnMaterials(view.scene);
   view.file = {view.scene.nodes,
@@ -289,7 +290,7 @@ View open(const SceneQuestion& question, const Warn& warn) {
                {},
                view.scene.environment.rotation,
                view.scene.environment.scale,
-               appearsLater(view.scene)};
+               appearsLater(view.scene, view.animation)};
   for (const scene::Material& material : view.scene.materials)
     view.file.emission.push_back(material.emission);
   if (warn)

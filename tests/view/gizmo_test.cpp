@@ -114,6 +114,17 @@ TEST(Gizmo, PlacesLightsAsFarAsTheyHaveAPlace) {
   }
 }
 
+/// In a scene of a millimetre as in one of a metre; the command line accepts what comes of it.
+TEST(Gizmo, LightsOfSmallScenesMayBeSmall) {
+  EXPECT_EQ(leastSide(50), 1e-4f);
+  EXPECT_LT(leastSide(1e-3f), 1e-6f);
+  for (const float radius : {0.f, 1e-12f, 1e-3f, 1e30f}) {
+    session::LightEdits edits;
+    edits["lamp"].size = glm::vec2(leastSide(radius));
+    EXPECT_TRUE(session::parseLightEdits(session::printed(edits)) == edits) << radius;
+  }
+}
+
 TEST(Gizmo, NothingIsHeldElsewhere) {
   const ScreenCamera camera = screen();
   EXPECT_FALSE(handleAt(camera, {0, 0, 0}, GizmoMode::move, {410, 10}));

@@ -60,6 +60,34 @@ const TechniquePlugin kOneFramePlugin{
     [] { return std::span<const gpu::EmbeddedSource>(); },
     []() -> std::unique_ptr<Technique> { return std::make_unique<OneFrame>(); }};
 
+/// Darkens everything, in frames that take so long that pictures are smaller while things move.
+class SlowFrames : public Technique {
+ public:
+  frame::TextureHandle addPasses(frame::FrameGraph& graph, const TechniqueInputs&,
+                                 const TermRequest& request) override {
+    frame::PassBuilder pass = graph.addPass("clear", "slow_frames");
+    const auto target = pass.write(request.target, frame::Access::copyTarget, "black");
+    pass.execute([target](frame::PassContext& passContext) {
+      std::this_thread::sleep_for(std::chrono::milliseconds(100));
+      passContext.gl().ClearTexImage(passContext.texture(target).id(), 0, GL_RED, GL_FLOAT, nullptr);
+    });
+    return target;
+  }
+};
+
+constexpr TechniqueInfo kSlowFrames{.name = "slow_frames",
+                                    .title = "Slow frames",
+                                    .source = "a test",
+                                    .terms = termSet(Term::visibility),
+                                    .parameters = {},
+                                    .stress = {}};
+
+const TechniquePlugin kSlowFramesPlugin{
+    {},
+    &kSlowFrames,
+    [] { return std::span<const gpu::EmbeddedSource>(); },
+    []() -> std::unique_ptr<Technique> { return std::make_unique<SlowFrames>(); }};
+
 /// A picture at rest takes more frames than the one that is shown at first. The window goes on where one of
 /// them fails, and does not try it over and over.
 TEST(PictureStudio, AFrameThatFailsAtRestIsSaid) {
@@ -88,6 +116,70 @@ TEST(PictureStudio, AFrameThatFailsAtRestIsSaid) {
   order.scene.aa = 1;
   step();
   EXPECT_EQ(facts.picture.problem, "");
+}
+
+/// Nor does a frame of a sequence that fails leave a renderer with half of it: the window's picture comes
+/// back.
+TEST(PictureStudio, AfterASequenceThatFailsThePictureComesBack) {
+  const test::TemporaryFolder folder;
+  writeFile(folder / "lamp.glb", lamp());
+  const auto context = Context::create({});
+  gpu::Device device(*context);
+  PictureFacts facts;
+  PictureStudio studio(
+      device, {}, {}, [&](const PictureFacts& newest) { facts = newest; }, [] {});
+  PictureOrder order;
+  order.scene.scene = (folder / "lamp.glb").string();
+  order.techniques.push_back({&kOneFramePlugin, ParameterValues(kOneFrame.name, kOneFrame.parameters)});
+  studio.open({.scene = order.scene});
+  ASSERT_TRUE(facts.scene) << facts.message;
+  order.of = facts.scene;
+  order.size = {16, 12};
+  const auto step = [&] { studio.step(order, [] { return false; }); };
+  step();
+  EXPECT_EQ(facts.picture.problem, "");
+  studio.save({.picture = order, .file = folder / "a.png", .command = {}, .frames = FrameRange{0, 1}});
+  while (studio.saving()) studio.saveNext();
+  EXPECT_EQ(facts.message, "frame 1: there is no second frame");
+  EXPECT_TRUE(std::filesystem::exists(folder / "a.0000.png"));
+  EXPECT_FALSE(std::filesystem::exists(folder / "a.0001.png"));
+  step();
+  EXPECT_EQ(facts.picture.problem, "");
+}
+
+/// As when a file is to be opened, which turns out to be impossible: nothing has changed, and the whole
+/// picture stays.
+TEST(PictureStudio, NoSmallerPictureTakesThePlaceOfTheSameOne) {
+  const test::TemporaryFolder folder;
+  writeFile(folder / "lamp.glb", lamp());
+  const auto context = Context::create({});
+  gpu::Device device(*context);
+  PictureFacts facts;
+  PictureStudio studio(
+      device, {}, {}, [&](const PictureFacts& newest) { facts = newest; }, [] {});
+  PictureOrder order;
+  order.scene.scene = (folder / "lamp.glb").string();
+  order.techniques.push_back({&kSlowFramesPlugin, ParameterValues(kSlowFrames.name, kSlowFrames.parameters)});
+  studio.open({.scene = order.scene});
+  ASSERT_TRUE(facts.scene) << facts.message;
+  order.of = facts.scene;
+  order.size = {16, 12};
+  const auto step = [&] { studio.step(order, [] { return false; }); };
+  step();
+  EXPECT_TRUE(facts.picture.whole) << facts.picture.problem;
+  const uint64_t pictures = facts.pictures;
+  order.moving = true;
+  step();
+  EXPECT_EQ(facts.pictures, pictures);
+  EXPECT_TRUE(facts.picture.whole);
+  EXPECT_FALSE(facts.settled);
+  order.scene.eye = "0.4,3,0.7";
+  order.scene.target = "0.5,0,0.5";
+  step();
+  EXPECT_FALSE(facts.picture.whole) << "it takes too long while things move";
+  order.moving = false;
+  step();
+  EXPECT_TRUE(facts.picture.whole);
 }
 
 /// A picture that is made again gives the scene its lights again, for which the truth stops reading it. Where
@@ -228,6 +320,68 @@ TEST(PictureStudio, PicturesDoNotReplaceTheEnvironmentThatLightsThem) {
   EXPECT_EQ(std::filesystem::file_size(map), bytes);
   save("picture.exr");
   EXPECT_FALSE(facts.problem) << facts.message;
+}
+
+/// A file that nobody should take for a result is not written, as by the command that it would name.
+TEST(PictureStudio, PicturesThatAreNotFiniteAreNotSaved) {
+  const test::TemporaryFolder folder;
+  GltfBuilder b;
+  b.triangle();
+  // So close to the surface this is more than a float holds.
+  b.root["nodes"][0]["scale"] = {1e-6, 1e-6, 1e-6};
+  b.light({{"type", "point"}, {"intensity", 1e30}}, {{"translation", {3e-7, 3e-7, 1e-7}}});
+  writeFile(folder / "blinding.glb", b.glb());
+  const auto context = Context::create({});
+  gpu::Device device(*context);
+  PictureFacts facts;
+  PictureStudio studio(
+      device, {}, {}, [&](const PictureFacts& newest) { facts = newest; }, [] {});
+  PictureOrder order;
+  order.scene.scene = (folder / "blinding.glb").string();
+  order.scene.term = "direct";
+  studio.open({.scene = order.scene});
+  ASSERT_TRUE(facts.scene) << facts.message;
+  order.of = facts.scene;
+  order.size = {16, 16};
+  for (const char* name : {"a.png", "a.exr"}) {
+    studio.save({.picture = order, .file = folder / name, .command = {}, .frames = {}});
+    EXPECT_TRUE(facts.problem) << name;
+    EXPECT_NE(facts.message.find("pixels of term direct by no technique are not finite"), std::string::npos)
+        << facts.message;
+    EXPECT_FALSE(std::filesystem::exists(folder / name));
+  }
+  EXPECT_EQ(facts.picture.problem, "") << "it is shown all the same";
+}
+
+/// ImGui ends the program at a slider that goes as far as a float does.
+TEST(PictureStudio, AnimationsWithoutAnEndInSightAreEndless) {
+  const test::TemporaryFolder folder;
+  GltfBuilder b;
+  const int node = b.triangle();
+  const int places = b.vec3({{0, 0, 0}, {1, 0, 0}});
+  for (const float end : {3e38f, 2.f}) {
+    const int times = b.floats({0, end});
+    b.append("animations",
+             {{"samplers", GltfBuilder::json::array({{{"input", times}, {"output", places}}})},
+              {"channels", GltfBuilder::json::array(
+                               {{{"sampler", 0}, {"target", {{"node", node}, {"path", "translation"}}}}})}});
+  }
+  writeFile(folder / "long.glb", b.glb());
+  const auto context = Context::create({});
+  gpu::Device device(*context);
+  PictureFacts facts;
+  PictureStudio studio(
+      device, {}, {}, [&](const PictureFacts& newest) { facts = newest; }, [] {});
+  SceneQuestion scene;
+  scene.scene = (folder / "long.glb").string();
+  const auto secondsOf = [&](const char* animation) {
+    scene.animation = animation;
+    studio.open({.scene = scene});
+    return facts.scene ? facts.scene->seconds : -1;
+  };
+  EXPECT_EQ(secondsOf("#0"), 0) << facts.message;
+  EXPECT_TRUE(facts.scene->animated);
+  EXPECT_EQ(secondsOf("#1"), 2) << facts.message;
 }
 
 /// From then on, not from its first picture on, whose shaders may take seconds: a light of the scene before

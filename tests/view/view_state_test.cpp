@@ -239,6 +239,18 @@ TEST(Orbit, NeverTurnsOver) {
   EXPECT_GT(glm::distance(orbit.eye(), orbit.target()), 0);
 }
 
+/// A turn of the wheel is the same part of the distance in the smallest and in the largest scene.
+TEST(Orbit, GoesNearerAndFartherAtAnyScale) {
+  for (const float size : {1e-6f, 1.f, 1e12f}) {
+    const scene::Bounds box{glm::vec3(-size), glm::vec3(size)};
+    Orbit orbit(scene::lookAt({0, 0, 4 * size}, glm::vec3(0), 0.8f), box);
+    orbit.approach(0.9f);
+    EXPECT_NEAR(orbit.eye().z / size, 3.6f, 1e-3f) << size;
+    orbit.approach(2);
+    EXPECT_NEAR(orbit.eye().z / size, 7.2f, 1e-3f) << size;
+  }
+}
+
 /// A file that is read again may lie elsewhere: the next drag goes on from where the camera is.
 TEST(Orbit, StaysInTheWorldWhenTheOriginMoves) {
   const glm::dvec3 from(1e6, 0, -2e6), to(1e6 + 512, 64, -2e6);

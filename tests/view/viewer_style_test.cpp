@@ -1,4 +1,4 @@
-// The font of the viewer.
+// The font of the viewer, and how wide its tables are.
 #include "apps/view/viewer_style.h"
 
 #include <gtest/gtest.h>
@@ -21,6 +21,14 @@ TEST(ViewerStyle, TheFontHasTheLettersOfFileNames) {
     EXPECT_NE(fonts.Fonts[0]->FindGlyphNoFallback(letter), nullptr) << std::hex << letter;
   EXPECT_LE(fonts.TexWidth * fonts.TexHeight, 512 * 512);
   ImGui::DestroyContext();
+}
+
+/// In a window across several monitors, with small text, there is room for more than ImGui has.
+TEST(ViewerStyle, TablesHaveAsManyColumnsAsThereMayBe) {
+  EXPECT_EQ(tableColumns(50, 200), 1);
+  EXPECT_EQ(tableColumns(-8, 200), 1);
+  EXPECT_EQ(tableColumns(599, 200), 2);
+  EXPECT_EQ(tableColumns(15360, 100), 64);
 }
 
 }  // namespace

@@ -41,7 +41,7 @@ class ViewerWindowTest : public ::testing::Test {
         "hear() { for i in $(seq 1200); do [ $(grep -c \"$1\" said) -ge $2 ] && return; alive; sleep .05; "
         "done; "
         "echo not said: $1 >&2; }\n" +  //
-        // Keys are answered once in a frame; F6 writes a suite right away.
+        // Keys are answered once in a frame, except while the dialog is open; F6 writes a suite right away.
         "frames() { for n in $(seq $1); do rm -f a.toml; xdotool key F6; await a.toml; done; }\n" +
         "save() { xdotool key F5; await a.exr; mv a.exr $1; }\n" +  //
         "focused() { until xdotool windowfocus $window 2> unfocused; do alive; sleep .1; done; }\n" +

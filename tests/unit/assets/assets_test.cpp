@@ -9,6 +9,8 @@
 #include <cstdint>
 #include <cstdlib>
 #include <filesystem>
+#include <fstream>
+#include <iterator>
 #include <map>
 #include <nlohmann/json.hpp>
 #include <set>
@@ -327,6 +329,23 @@ TEST(Assets, TheGeneratorIsDeterministicAndRefusesUnknownNames) {
   EXPECT_EQ(status("--folder"), 2);
   EXPECT_EQ(status("--help"), 0);
   EXPECT_FALSE(fs::exists("--folder") || fs::exists("--help"));
+  fs::remove_all(folder);
+}
+
+/// Whoever has a file that is made again keeps the old one, and what cannot take its place leaves nothing
+/// behind.
+TEST(Assets, TheGeneratorReplacesFilesWhole) {
+  const fs::path folder = fs::path(testing::TempDir()) / "limn_assets_whole_test";
+  fs::remove_all(folder);
+  fs::create_directories(folder / "environments");
+  fs::create_directory(folder / "about.json");  // which ends the program before it makes the scenes
+  std::ofstream(folder / "before") << "old";
+  fs::create_hard_link(folder / "before", folder / "environments/sky.exr");
+  const std::string program = std::string(limn::test::kBinaryDir) + "/bin/limn-make-scenes ";
+  EXPECT_NE(std::system((program + folder.string() + " > /dev/null 2>&1").c_str()), 0);
+  EXPECT_EQ(bytesOf(folder / "before"), "old");
+  EXPECT_EQ(bytesOf(folder / "environments/sky.exr"), bytesOf(kAssets / "environments/sky.exr"));
+  EXPECT_EQ(std::distance(fs::directory_iterator(folder), {}), 3) << "environments, about.json, before";
   fs::remove_all(folder);
 }
 

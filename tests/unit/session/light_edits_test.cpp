@@ -196,6 +196,22 @@ TEST_F(MeshLights, StayWhereTheyArePutWhateverAnimationsSay) {
             scene::evaluate(later, 1).instances[1].objectToWorld);
 }
 
+/// Of several animations the start of the one that is shown says how large a lamp is.
+TEST_F(MeshLights, AreAtRestAtTheStartOfTheirAnimation) {
+  for (const float scale : {0.5f, 1.f}) {
+    scene::Animation& animation = scene_.animations.emplace_back();
+    animation.duration = 2;
+    animation.channels = {{scene::AnimationChannel::Path::scale,
+                           scene::AnimationChannel::Interpolation::linear,
+                           1,
+                           {0, 2},
+                           {scale, scale, 1, 2, 2, 1}}};
+  }
+  const int shown = 1;
+  applyLightEdits(scene_, scene::evaluate(scene_, 1, shown), parseLightEdits({"right.intensity=3"}), shown);
+  EXPECT_NEAR(*describeLight(scene_, scene::evaluate(scene_, 0, shown), 1).intensity, 3, 1e-5f);
+}
+
 /// Whichever way they are named.
 TEST_F(MeshLights, AreToldFromLampsThatChangeNoMaterial) {
   scene_.lights.push_back({.name = "lamp", .type = glsl::light_point, .intensity = 3});

@@ -5,6 +5,7 @@
 #include <gtest/gtest.h>
 #include <unistd.h>
 
+#include <cmath>
 #include <cstring>
 #include <filesystem>
 #include <map>
@@ -233,6 +234,31 @@ TEST(Medium, CoefficientsPerSceneAreOpticalDepths) {
     question.sigmaS = wrong;
     EXPECT_THROW(open(question), UsageError) << wrong;
   }
+}
+
+/// Of several animations the one that is asked for says how wide the scene is.
+TEST(Medium, CoefficientsPerSceneAndSmokeFollowTheAnimation) {
+  test::GltfBuilder b;
+  b.triangle();
+  const int start = b.floats({0});
+  for (const float size : {1.f, 10.f}) {
+    const int scale = b.vec3({glm::vec3(size)});
+    b.append("animations", {{"samplers", {{{"input", start}, {"output", scale}}}},
+                            {"channels", {{{"sampler", 0}, {"target", {{"node", 0}, {"path", "scale"}}}}}}});
+  }
+  const std::string file = testing::TempDir() + "two_sizes.glb";
+  writeFile(file, b.glb());
+  SceneQuestion question;
+  question.scene = file;
+  question.defaultLights = "off";
+  question.sigmaS = "0.5/scene";
+  question.animation = "#1";
+  question.grid = "smoke";
+  const View view = open(question);
+  const double diameter = 2 * view.pose.bounds.radius();
+  EXPECT_NEAR(diameter, std::sqrt(200.0), 1e-5);
+  EXPECT_NEAR(view.scene.medium.sigmaS.x * diameter, 0.5, 1e-6);
+  EXPECT_GE(view.scene.medium.smoke.value().high.x, view.pose.bounds.high.x);
 }
 
 TEST(DefaultLights, LeaveScenesAsTheyAreLitUnlessAskedFor) {
