@@ -51,7 +51,7 @@ def interface(roots):
     """Name and content of every file of the interface."""
     with open(os.path.join(os.path.dirname(os.path.abspath(__file__)), "module_headers.txt"), encoding="utf-8") as file:
         listed = [line.strip() for line in file if line.strip() and not line.startswith("#")]
-    entries = [found(name, roots[0], roots) for name in listed]
+    entries = [found(name, os.path.join(roots[0], ""), roots) for name in listed]  # as a file in the root names them
     for root in roots:
         for folder, _, names in os.walk(os.path.join(root, "glsl")):
             entries += [os.path.join(folder, name) for name in names if name.endswith(".glsl")]

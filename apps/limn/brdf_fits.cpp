@@ -32,16 +32,19 @@ struct Kind {
   const char* name;
   Factorisation factorisation;
   int texels;
+  bool floored, refined, warped;  ///< whether --no-floor, --no-refine and --no-warp change it
   const char* help;
 };
 constexpr std::array kKinds{
-    Kind{"dfg", Factorisation::dfg, 64, "exp(D(n.h) + F(h.l) + G(n.l) + G(n.v))"},
-    Kind{"tables", Factorisation::tables, 64, "dfg baked into two tables of two dimensions"},
-    Kind{"pqp", Factorisation::pqp, 64, "exp(p(n.l) + q(n.h) + p(n.v))"},
-    Kind{"pqp_disc", Factorisation::pqp_disc, 32, "the same over whole directions"},
-    Kind{"dfg_disc", Factorisation::dfg_disc, 32, "dfg with D and G over whole directions"},
-    Kind{"svd", Factorisation::svd, 24, "sum of products over half vector and difference"},
-    Kind{"trilinear", Factorisation::trilinear, 32,
+    Kind{"dfg", Factorisation::dfg, 64, true, true, false, "exp(D(n.h) + F(h.l) + G(n.l) + G(n.v))"},
+    Kind{"tables", Factorisation::tables, 64, true, true, true,
+         "dfg baked into two tables of two dimensions"},
+    Kind{"pqp", Factorisation::pqp, 64, true, true, false, "exp(p(n.l) + q(n.h) + p(n.v))"},
+    Kind{"pqp_disc", Factorisation::pqp_disc, 32, true, true, true, "the same over whole directions"},
+    Kind{"dfg_disc", Factorisation::dfg_disc, 32, true, true, true, "dfg with D and G over whole directions"},
+    Kind{"svd", Factorisation::svd, 24, true, false, false,
+         "sum of products over half vector and difference"},
+    Kind{"trilinear", Factorisation::trilinear, 32, false, false, false,
          "one table over half vector and difference, half the texels in the others"},
 };
 
@@ -90,12 +93,25 @@ brdf::FitSettings settingsOf(const Kind& kind, const BrdfFitsArguments& options)
   return settings;
 }
 
+/// Throws UsageError for a flag that leaves the one fit as it is.
+void refuseIdleFlags(const Kind& kind, const BrdfFitsArguments& options) {
+  const auto refuse = [&](const char* flag, bool given, bool changes) {
+    if (given && !changes)
+      throw UsageError(
+          fmt::format("{} is not accepted with --fit {}, which it does not change", flag, kind.name));
+  };
+  refuse("--no-floor", options.noFloor, kind.floored);
+  refuse("--no-refine", options.noRefine, kind.refined);
+  refuse("--no-warp", options.noWarp, kind.warped);
+}
+
 /// What is asked for: one fit, or all kinds, with the coordinates and terms that they are compared with.
-/// Throws UsageError for more terms than a kind takes, and more texels than svd does, where it is the one
-/// fit; among all kinds each has as many as it takes.
+/// Throws UsageError for more terms than a kind takes, more texels than svd does and flags that change
+/// nothing, where it is the one fit; among all kinds each has what it takes.
 std::vector<brdf::FitSettings> settingsOf(const BrdfFitsArguments& options) {
   if (!options.kind.empty()) {
     const Kind& kind = rowNamed(kKinds, options.kind, "--fit");
+    refuseIdleFlags(kind, options);
     if (kind.factorisation == Factorisation::svd && options.texels > brdf::kMostSvdTexels)
       throw UsageError(fmt::format("--texels {} is not accepted with --fit svd, which takes 2 to {}",
                                    options.texels, brdf::kMostSvdTexels));
@@ -228,12 +244,12 @@ std::function<int()> addBrdfFit(CLI::App& command) {
   command
       .add_option("--texels", options->texels,
                   fmt::format("Texels along an axis of a factor; svd has {} at most", brdf::kMostSvdTexels))
-      ->check(CLI::Range(2, 512));
+      ->transform(wholeRange(2, 512));
   command
       .add_option("--terms", options->terms,
                   "Products that the fit is the sum of: at most 16 of svd, 2 of dfg, pqp and those over "
                   "directions, 1 of the others")
-      ->check(CLI::Range(1, 16));
+      ->transform(wholeRange(1, 16));
   command.add_flag("--no-floor", options->noFloor, "Fit the product alone, without a diffuse part beside it");
   command.add_flag("--no-refine", options->noRefine, "Keep the least squares of the logarithms");
   command.add_flag("--no-warp", options->noWarp, "Coordinates of pqp_disc, dfg_disc and tables as published");

@@ -75,10 +75,8 @@ Action addBenchCommand(CLI::App& command) {
                   "Folder for results.jsonl, index.html, tables and references; a run that is in it already "
                   "is resumed")
       ->required();
-  command
-      .add_option("--filter", options->filters,
-                  "Only cases whose label contains this text; of several, all of them")
-      ->take_all();
+  takeOneEach(command.add_option("--filter", options->filters,
+                                 "Only cases whose label contains this text; of several, all of them"));
   CLI::Option* against = command.add_option(
       "--against", options->against,
       "Folder of an earlier result: says what got slower or worse beyond noise, exit status 1 if "
@@ -95,7 +93,7 @@ Action addBenchCommand(CLI::App& command) {
       ->needs(slurm);
   command.add_option("--nodes", options->job.nodes, "Nodes that work at once")
       ->needs(slurm)
-      ->check(CLI::Range(1, 100000))
+      ->transform(wholeRange(1, 100000))
       ->capture_default_str();
   command
       .add_option("--stall-timeout", options->stallTimeout,

@@ -167,10 +167,10 @@ std::function<int()> addSimulate(CLI::App& command) {
       ->capture_default_str();
   command.add_option("--strips", options->strips, "Strips of one radiosity each that a wall is cut into")
       ->capture_default_str()
-      ->check(CLI::Range(1, 256));
+      ->transform(wholeRange(1, 256));
   command.add_option("--size", options->size, "Texels along each side of the discs of l and v")
       ->capture_default_str()
-      ->check(CLI::Range(2, brdf::kMostDiscTexels));
+      ->transform(wholeRange(2, brdf::kMostDiscTexels));
   command.add_flag("--float32", options->float32, "Keep numbers of 32 bits, not of 16");
   return [options] { return simulate(*options); };
 }

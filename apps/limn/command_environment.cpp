@@ -136,7 +136,7 @@ Action addEnvironmentCommand(CLI::App& command) {
                                             "Write the map with the lights' outlines: .png or .exr");
   command.add_option("--width", options->width, "Width of the overlay, pixels")
       ->capture_default_str()
-      ->check(CLI::Range(16, 16384))
+      ->transform(wholeRange(16, 16384))
       ->needs(overlay);
   command.add_option("--exposure", options->exposure, "Exposure of the overlay, EV")
       ->check(exposureRange())

@@ -102,11 +102,11 @@ Action addExplainCostCommand(CLI::App& command) {
       .add_option("--repeat", options->savings.frames,
                   "Number of frames to time with, and again without, each kind of work")
       ->capture_default_str()
-      ->check(CLI::Range(1, 100000));
+      ->transform(wholeRange(1, 100000));
   command
       .add_option("--spp", options->spp,
                   "Also report the errors against a reference with this many samples per pixel")
-      ->check(CLI::Range(1, 1 << 22));
+      ->transform(wholeRange(1, 1 << 22));
   command.add_option("-o,--out", options->out, "Also write the table to this Markdown file");
   command.add_option("--json", options->json, "Write all time samples to this JSON file");
   return [options] { return runExplainCost(*options); };

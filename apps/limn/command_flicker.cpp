@@ -171,12 +171,12 @@ Action addFlickerCommand(CLI::App& command) {
       ->check(realRange(0.001, 1e5));
   command.add_option("--spp", options->spp, "Samples per pixel of the reference, which is rendered twice")
       ->capture_default_str()
-      ->check(CLI::Range(2, 1 << 22));
+      ->transform(wholeRange(2, 1 << 22));
   command
       .add_option("--bounces", options->bounces,
                   "Bounces of the reference, as in limn reference --bounces; default: those of the "
                   "technique that\nanswers indirect, or the term's")
-      ->check(CLI::Range(0, reference::kMaxBounces));
+      ->transform(wholeRange(0, reference::kMaxBounces));
   command.add_option("--at-most", options->atMost, "Exit with status 1 if the ratio exceeds this value")
       ->check(realRange(0.0, 1e9));
   command.add_flag("--json", options->json, "Print JSON");

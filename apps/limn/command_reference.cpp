@@ -135,14 +135,14 @@ Action addReferenceCommand(CLI::App& command) {
   command
       .add_option("--spp", options->spp,
                   "Samples per pixel and light (default 256); with --noise the maximum (default 1048576)")
-      ->check(CLI::Range(1, 1 << 24));
+      ->transform(wholeRange(1, 1 << 24));
   command
       .add_option(
           "--bounces", options->bounces,
           "Most surfaces that reflect light before the one that is seen does: indirect is the light that\n"
           "came over 1 to N of them (default 1), final adds it to direct light (default 0: direct alone),\n"
           "specular sees as much of both")
-      ->check(CLI::Range(0, reference::kMaxBounces));
+      ->transform(wholeRange(0, reference::kMaxBounces));
   command.add_option(
       "--interfaces", options->interfaces,
       "Most smooth interfaces between the camera and what it sees in a specular object, as image space has\n"
@@ -169,7 +169,7 @@ Action addReferenceCommand(CLI::App& command) {
           "--seed", [options](const std::string& text) { options->seed = parseSeed(text); },
           "Seed of the random numbers")
       ->type_name("UINT");
-  command.add_option("--threads", options->threads, "0: all cores")->check(CLI::Range(0, 1024));
+  command.add_option("--threads", options->threads, "0: all cores")->transform(wholeRange(0, 1024));
   options->tone.addTo(command);
   command.add_option("--cache", options->cache,
                      "Folder in which finished references are kept, and reused for the same request");

@@ -77,39 +77,20 @@ void printStats(const render::FrameStats& stats) {
                stats.passSumMs, stats.frameMs.median);
 }
 
-/// Throws Error for a picture with values that are not finite, which no file should be taken for a result
-/// with.
-void checkFinite(const Image& picture, const RenderArguments& options) {
-  size_t count = 0;
-  glm::ivec2 first(0);
-  for (int y = 0; y < picture.height(); ++y)
-    for (int x = 0; x < picture.width(); ++x) {
-      const bool finite = std::ranges::all_of(picture.pixel(x, y), [](float v) { return std::isfinite(v); });
-      if (!finite && count++ == 0) first = {x, y};
-    }
-  if (count > 0)
-    throw Error(
-        fmt::format("{}: {} of {} pixels of term {} by {} are not finite, the first at {},{} from the upper "
-                    "left; nothing is written",
-                    options.out.string(), count, picture.pixelCount(), options.scene.term,
-                    options.technique.techniques.empty() ? "no technique" : options.technique.techniques,
-                    first.x, first.y));
-}
-
 /// Writes pictures whose values are finite; all with the exposure of the first.
 class Writer {
  public:
   explicit Writer(const RenderArguments& options) : options_(options) {}
 
   void add(Movie& movie, const Image& picture) {
-    checkFinite(picture, options_);
+    check(picture, options_.out);
     // The exposure of what a display shows, as of a .png.
     if (!tone_) tone_ = options_.tone.toneMapping(fs::path(options_.out).replace_extension(".png"), picture);
     movie.add(toneMapped(picture, *tone_));
   }
 
   void write(const fs::path& file, Image picture) {
-    checkFinite(picture, options_);
+    check(picture, file);
     if (!tone_) tone_ = options_.tone.toneMapping(file, picture);
     sign(picture);
     writePicture(file, picture, *tone_);
@@ -123,6 +104,10 @@ class Writer {
   }
 
  private:
+  void check(const Image& picture, const fs::path& file) const {
+    checkFinite(picture, file, options_.scene.term, options_.technique.techniques);
+  }
+
   const RenderArguments& options_;
   std::optional<ToneMapping> tone_;
 };
@@ -295,7 +280,7 @@ Action addRenderCommand(CLI::App& command) {
   command
       .add_option("--repeat", options->repeat,
                   "After the picture, time this many frames (with --stats 10 by default)")
-      ->check(CLI::Range(1, 100000));
+      ->transform(wholeRange(1, 100000));
   auto* dynamicFlag = command.add_flag("--dynamic", options->dynamicFrames,
                                        "Compute everything again in each timed frame (default)");
   command.add_flag("--static", options->staticFrames, "Reuse unchanged results in timed frames")

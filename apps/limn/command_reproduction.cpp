@@ -1,4 +1,4 @@
-// limn reproduction: what the thesis found, beside what bench results say.
+// limn reproduction: what the thesis found, or another text, beside what bench results say.
 #include <fmt/format.h>
 
 #include <string>
@@ -8,6 +8,7 @@
 #include "apps/limn/options.h"
 #include "core/base/error.h"
 #include "core/base/file.h"
+#include "core/bench/markdown_text.h"
 #include "core/bench/reproduction.h"
 #include "core/bench/results_file.h"
 #include "core/session/find.h"
@@ -22,19 +23,18 @@ struct ReproductionArguments {
 };
 
 int runReproduction(const ReproductionArguments& options) {
-  fs::path claims = options.claims;
-  if (claims.empty()) claims = session::findShared("benchmarks", "reproduction.claims");
-  if (claims.empty())
+  fs::path file = options.claims;
+  if (file.empty()) file = session::findShared("benchmarks", "reproduction.claims");
+  if (file.empty())
     throw Error("reproduction.claims was not built or installed with limn; name a file with --claims");
   std::vector<fs::path> files;
   for (const fs::path& folder : options.results) files.push_back(folder / "results.jsonl");
   const std::vector<bench::Row> rows = bench::readRows(files);
+  const bench::Claims claims = bench::readClaims(file);
   const std::string page =
-      "# What the thesis found, and what is measured here\n\n"
-      "The thesis measured on GPUs of 2006 and 2009: its frame rates beside those of another renderer would "
-      "say nothing,\n"
-      "its ratios may. Made by `limn reproduction` from rows of `limn bench`.\n\n" +
-      bench::reproductionMarkdown(bench::readClaims(claims), rows);
+      fmt::format("# {}\n\n{}{}Made by `limn reproduction` from rows of `limn bench`.\n\n{}",
+                  bench::markdownText(claims.title), claims.preface, claims.preface.empty() ? "" : " ",
+                  bench::reproductionMarkdown(claims.all, rows));
   writeTextFile(options.out, page);
   sayWritten(options.out);
   return 0;
@@ -50,7 +50,8 @@ Action addReproductionCommand(CLI::App& command) {
                   "last one count")
       ->required();
   command.add_option("-o,--out", options->out, "Markdown file")->required();
-  command.add_option("--claims", options->claims, "TOML file; default: the thesis's");
+  command.add_option("--claims", options->claims,
+                     "TOML file of claims and their page's title; default: the thesis's");
   return [options] { return runReproduction(*options); };
 }
 

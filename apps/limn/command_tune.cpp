@@ -6,6 +6,7 @@
 #include <map>
 #include <nlohmann/json.hpp>
 #include <optional>
+#include <system_error>
 
 #include "apps/limn/commands.h"
 #include "apps/limn/interruption.h"
@@ -41,12 +42,15 @@ class Tuning {
     const TechniqueRegistry registry(TechniqueRegistry::defaultFolders(), warn);
     spaces_ = searchedTechniques(registry, options, term_, bounces_);
     for (const SearchedTechnique& space : spaces_) searched_.push_back(space.space);
+    if (options.exhaustive) checkGrid();
   }
 
   void run() {
     folder_.emplace(options_.out, options_.backend, options_.stallTimeout);
     plan_ = bench::tunePlan(options_.scene.width, options_.scene.height, options_.frames, options_.turns);
     checkFirst();
+    std::error_code ignored;
+    fs::remove(suiteFile(), ignored);  // what an earlier search found answers another question
     const auto measure = [this](std::span<const bench::TuneSetting> settings,
                                 const bench::TuneEffort& effort) { return measured(settings, effort); };
     const bench::TuneResult result =
@@ -57,6 +61,21 @@ class Tuning {
   }
 
  private:
+  /// Throws UsageError for a grid of more settings than a suite may have cases.
+  void checkGrid() const {
+    constexpr double most = 100'000;
+    double settings = 0;
+    for (const bench::TuneSpace& space : searched_)
+      settings += static_cast<double>(bench::settingCount(space));
+    if (settings > most)
+      throw UsageError(
+          fmt::format("--exhaustive: the grid has {:.6g} settings, at most {} are measured; --techniques and "
+                      "--steps choose fewer, --set fixes a parameter",
+                      settings, most));
+  }
+
+  fs::path suiteFile() const { return options_.out / "tuned.toml"; }
+
   /// The suite that measures these settings in full.
   std::string suiteText(std::span<const bench::TuneSetting> settings) const {
     std::string text = fmt::format(
@@ -211,8 +230,7 @@ class Tuning {
     if (!doubts.empty()) warn(doubts);
     std::vector<bench::TuneSetting> chosen{result.answers.front()};
     if (const auto second = runnerUp(result.answers)) chosen.push_back(*second);
-    const fs::path suite = options_.out / "tuned.toml";
-    writeTextFile(suite, suiteText(chosen));
+    writeTextFile(suiteFile(), suiteText(chosen));
     if (options_.json)
       fmt::print("{}\n", describe(result, chosen).dump(2));
     else
@@ -222,7 +240,7 @@ class Tuning {
                                                 : std::string();
     fmt::print(stderr, "limn: {} techniques: {}{} settings measured\n", spaces_.size(), tried,
                result.measured);
-    sayWritten(suite);
+    sayWritten(suiteFile());
     sayWritten(options_.out / "index.html");
   }
 
@@ -306,26 +324,24 @@ Action addTuneCommand(CLI::App& command) {
   command.add_option("--techniques,--technique", options->techniques,
                      "Techniques to choose from, comma-separated; default: all that answer the term, for "
                      "direct and final those that answer direct or visibility");
-  command
-      .add_option("--set", options->settings,
-                  "TECHNIQUE.PARAMETER=VALUE, repeatable: a parameter that is not searched")
-      ->take_all();
+  takeOneEach(command.add_option("--set", options->settings,
+                                 "TECHNIQUE.PARAMETER=VALUE, repeatable: a parameter that is not searched"));
   command
       .add_option("--steps", options->steps,
                   "Most steps from a parameter's default in each direction, by factors of 2")
       ->capture_default_str()
-      ->check(CLI::Range(0, 12));
+      ->transform(wholeRange(0, 12));
   command.add_option("--spp", options->spp, "Samples per pixel of the references")
       ->capture_default_str()
-      ->check(CLI::Range(1, 1 << 24));
+      ->transform(wholeRange(1, 1 << 24));
   command.add_option("--bounces", options->bounces, "Bounces of indirect light; default: the term's")
-      ->check(CLI::Range(1, reference::kMaxBounces));
+      ->transform(wholeRange(1, reference::kMaxBounces));
   command.add_option("--frames", options->frames, "Timed frames of a turn of the last settings")
       ->capture_default_str()
-      ->check(CLI::Range(1, 100000));
+      ->transform(wholeRange(1, 100000));
   command.add_option("--turns", options->turns, "Turns in which the last settings are timed one by one")
       ->capture_default_str()
-      ->check(CLI::Range(1, 1000));
+      ->transform(wholeRange(1, 1000));
   command
       .add_option("--max-masked-share", options->maskedShare,
                   "Share of pixels that may differ in coverage, instance or depth and are left out")

@@ -75,6 +75,23 @@ void checkExtension(const char* option, const fs::path& file, const std::vector<
                                  file.string(), joined(extensions, "or")));
 }
 
+void checkFinite(const Image& picture, const fs::path& file, const std::string& term,
+                 const std::string& techniques) {
+  std::size_t count = 0;
+  int firstX = 0, firstY = 0;
+  for (int y = 0; y < picture.height(); ++y)
+    for (int x = 0; x < picture.width(); ++x) {
+      const bool finite = std::ranges::all_of(picture.pixel(x, y), [](float v) { return std::isfinite(v); });
+      if (!finite && count++ == 0) firstX = x, firstY = y;
+    }
+  if (count > 0)
+    throw Error(
+        fmt::format("{}: {} of {} pixels of term {} by {} are not finite, the first at {},{} from the upper "
+                    "left; nothing is written",
+                    file.string(), count, picture.pixelCount(), term,
+                    techniques.empty() ? "no technique" : techniques, firstX, firstY));
+}
+
 void checkShaderFolder(const fs::path& folder) {
   if (folder.empty()) return;
   std::error_code ignored;
@@ -108,7 +125,7 @@ void addTechniqueFlags(CLI::App& command, session::TechniqueChoice& choice) {
   command.add_option("--technique,--techniques", choice.techniques,
                      "Techniques, comma-separated (see limn list); NAME:TERM+TERM asks one for these of its "
                      "terms alone; without this option: unshadowed");
-  command.add_option("--set", choice.settings, "TECHNIQUE.PARAMETER=VALUE, repeatable")->take_all();
+  takeOneEach(command.add_option("--set", choice.settings, "TECHNIQUE.PARAMETER=VALUE, repeatable"));
 }
 
 void addDeviceFlags(CLI::App& command, int& device, bool& debug) {
@@ -117,7 +134,7 @@ void addDeviceFlags(CLI::App& command, int& device, bool& debug) {
           "--device", device,
           "EGL device, by its index in limn info; default: the first GPU with OpenGL 4.5, or else the "
           "processor")
-      ->check(CLI::Range(0, 255));
+      ->transform(wholeRange(0, 255));
   command.add_flag("--gl-debug", debug, "Use an OpenGL debug context: driver errors end the run");
 }
 
@@ -128,6 +145,10 @@ void BackendOptions::addTo(CLI::App& command) {
           "Where OpenGL comes from; osmesa: always the processor; glfw: a hidden window, which needs a "
           "display")
       ->type_name("{egl,osmesa,glfw}")
+      ->check([](const std::string& text) {
+        parseBackend(text);
+        return std::string();
+      })
       ->capture_default_str();
   addDeviceFlags(command, device, debug);
 }

@@ -12,6 +12,7 @@
 #include <vector>
 
 #include "core/context/context.h"
+#include "core/image/image.h"
 #include "core/question/scene_question.h"
 #include "core/session/technique_choice.h"
 
@@ -26,6 +27,10 @@ CLI::Option* addSceneFlag(CLI::App& command, SceneQuestion& question, std::strin
 /// Accepts the real numbers from `low` to `high`. CLI::Range accepts NaN as well, with which every comparison
 /// is false.
 CLI::Validator realRange(double low, double high);
+
+/// Accepts the whole numbers from `low` to `high`, in decimal: 010 is ten, which CLI::Range and what follows
+/// it read as 8, as C does. It is for CLI::Option::transform(), since it writes the number as both read it.
+CLI::Validator wholeRange(int low, int high);
 
 /// Returns the path of another of limn's programs, which lie in one folder.
 std::filesystem::path programBeside(const std::string& name);
@@ -43,6 +48,11 @@ void checkApart(const std::vector<std::filesystem::path>& written,
 void checkExtension(const char* option, const std::filesystem::path& file,
                     const std::vector<std::string>& extensions);
 
+/// Throws Error where a picture that is to become `file` has values that are not finite: nobody should take
+/// such a file for a result. The line names the term and the `techniques`; "": none.
+void checkFinite(const Image& picture, const std::filesystem::path& file, const std::string& term,
+                 const std::string& techniques);
+
 /// Throws UsageError unless the value of --shaders is empty or a folder. Warns of one without any shaders.
 void checkShaderFolder(const std::filesystem::path& folder);
 
@@ -54,6 +64,10 @@ struct FrameRange {
 std::optional<FrameRange> parseFrames(const std::string& text);
 /// Returns the file name of one frame: picture.png, frame 7 -> picture.0007.png.
 std::filesystem::path numbered(const std::filesystem::path& out, int frame);
+
+/// Makes an option repeatable, with one value each time. CLI11 would take what follows for further values, a
+/// scene as well.
+void takeOneEach(CLI::Option* option);
 
 /// Gives the command --technique and --set.
 void addTechniqueFlags(CLI::App& command, session::TechniqueChoice& choice);

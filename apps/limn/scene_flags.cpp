@@ -3,6 +3,8 @@
 #include <fmt/ranges.h>
 
 #include <algorithm>
+#include <cmath>
+#include <optional>
 
 #include "apps/limn/options.h"
 #include "core/base/error.h"
@@ -53,6 +55,21 @@ CLI::Validator realRange(double low, double high) {
   return {problem, fmt::format("FLOAT in [{:g} - {:g}]", low, high)};
 }
 
+CLI::Validator wholeRange(int low, int high) {
+  const auto problem = [low, high](std::string& text) {
+    const std::optional<double> value = parseNumber(text);
+    if (!value || *value != std::floor(*value) || *value < low || *value > high)
+      return fmt::format("Value {} not in range {} to {}", text, low, high);
+    text = fmt::format("{:.0f}", *value);
+    return std::string();
+  };
+  return {problem, fmt::format("INT in [{} - {}]", low, high)};
+}
+
+void takeOneEach(CLI::Option* option) {
+  option->take_all()->allow_extra_args(false);
+}
+
 CLI::Option* addSceneFlag(CLI::App& command, SceneQuestion& question, std::string_view key,
                           const std::string& chosenFlag) {
   const QuestionField& field = questionField(key);
@@ -76,7 +93,7 @@ CLI::Option* addSceneFlag(CLI::App& command, SceneQuestion& question, std::strin
         option->capture_default_str();
       break;
     case QuestionKind::integer:
-      option->check(CLI::Range(static_cast<int>(field.range.low), static_cast<int>(field.range.high)));
+      option->transform(wholeRange(static_cast<int>(field.range.low), static_cast<int>(field.range.high)));
       option->capture_default_str();
       break;
     case QuestionKind::choice:
@@ -84,7 +101,7 @@ CLI::Option* addSceneFlag(CLI::App& command, SceneQuestion& question, std::strin
       option->capture_default_str();
       break;
     case QuestionKind::texts:
-      option->take_all();
+      takeOneEach(option);
       break;
     case QuestionKind::text:
     case QuestionKind::coefficient:

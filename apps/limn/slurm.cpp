@@ -127,8 +127,9 @@ std::string submitSuite(const fs::path& suiteFile, const fs::path& folder, const
   const auto cases = bench::selectCases(asked.cases, run.filters);
   if (cases.empty())
     throw UsageError(fmt::format("suite {} has no case that fits the filter", suite.string()));
+  refuseWhileRunning(out);  // before the folder is locked, which the job that merges does as well
   ResultsFolder results(out, {}, 0);
-  refuseWhileRunning(out);
+  refuseWhileRunning(out);  // another command may have submitted jobs in between
   const TechniqueRegistry registry(TechniqueRegistry::defaultFolders());
   session::CaseOrigins origins(registry);
   const auto provenance = [&](const bench::Case& c) { return origins.of(c); };

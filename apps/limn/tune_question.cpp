@@ -30,6 +30,15 @@ TermSet answering(Term term) {
   return term == Term::direct || term == Term::final ? light : termSet(term);
 }
 
+/// The technique's name, with its other terms alone where the picture would show light over other surfaces
+/// that the reference lacks, since it has no bounces: that light would count as an error.
+std::string namedForReference(const TechniquePlugin& plugin, Term term, int bounces) {
+  const TermSet terms = plugin.info->terms, others = terms & ~termSet(Term::indirect);
+  const bool lacks =
+      bounces == 0 && render::bouncesOf(term, {{&plugin, {}, terms}}) > 0 && (others & answering(term)) != 0;
+  return render::nameOf({&plugin, {}, lacks ? others : terms});
+}
+
 std::vector<const TechniquePlugin*> chosenTechniques(const TechniqueRegistry& registry,
                                                      const TuneArguments& options, Term term) {
   std::vector<const TechniquePlugin*> chosen;
@@ -119,7 +128,8 @@ std::vector<SearchedTechnique> searchedTechniques(const TechniqueRegistry& regis
   std::vector<SearchedTechnique> spaces;
   for (const TechniquePlugin* plugin : techniques) {
     const TechniqueInfo& info = *plugin->info;
-    SearchedTechnique searched{{info.name, {}}, fixedParameters(info, options, bounces)};
+    SearchedTechnique searched{{namedForReference(*plugin, term, bounces), {}},
+                               fixedParameters(info, options, bounces)};
     session::choiceOf(info.name, searched.fixed).resolve(registry);  // for its errors
     searched.fixed = lastValues(searched.fixed);
     for (const Parameter& parameter : info.parameters) {

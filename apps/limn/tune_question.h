@@ -54,7 +54,8 @@ struct SearchedTechnique {
 };
 
 /// Returns the techniques that are asked for, or all that change a picture of `term`, each with `bounces`
-/// where it has any. Throws UsageError for what a technique does not have.
+/// where it has any, and with 0 bounces without light over other surfaces. Throws UsageError for what a
+/// technique does not have.
 std::vector<SearchedTechnique> searchedTechniques(const TechniqueRegistry& registry,
                                                   const TuneArguments& options, Term term, int bounces);
 

@@ -1,4 +1,7 @@
-// Reads the thesis's claims. Every complaint names file, line and column.
+// Reads published claims. Every complaint names file, line and column.
+#include <fmt/format.h>
+#include <fmt/ranges.h>
+
 #include <utility>
 
 #include "core/base/file.h"
@@ -52,20 +55,22 @@ Claim parseClaim(const std::string& file, const toml::table& table) {
 
 }  // namespace
 
-std::vector<Claim> parseClaims(std::string_view toml, const std::string& fileName) {
+Claims parseClaims(std::string_view toml, const std::string& fileName) {
   checkTomlNesting(toml, fileName);
   try {
     const toml::table root = toml::parse(toml);
-    std::vector<Claim> claims;
-    for (const toml::table* table : TomlSection(fileName, root, "the file", {"claims"}).tables("claims"))
-      claims.push_back(parseClaim(fileName, *table));
+    const TomlSection file(fileName, root, "the file", {"title", "preface", "claims"});
+    Claims claims{file.text("title", "What was published, and what is measured here"),
+                  fmt::format("{}", fmt::join(file.texts("preface", {}), "\n")),
+                  {}};
+    for (const toml::table* table : file.tables("claims")) claims.all.push_back(parseClaim(fileName, *table));
     return claims;
   } catch (const toml::parse_error& error) {
     failAt(fileName, error.source(), std::string(error.description()));
   }
 }
 
-std::vector<Claim> readClaims(const std::filesystem::path& path) {
+Claims readClaims(const std::filesystem::path& path) {
   return parseClaims(readTextFile(path, 1 << 24), path.string());
 }
 

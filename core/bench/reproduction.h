@@ -3,6 +3,9 @@
 //
 // Claims are read from TOML:
 //
+//     title = "What the thesis found, and what is measured here"   # of the page
+//     preface = ["What readers should know,", "in lines of Markdown."]   # below it; both may be missing
+//
 //     [[claims]]
 //     where = "7.6, figure 7.7"           # section, table or figure
 //     what = "VSSM against PCSS"
@@ -44,9 +47,15 @@ struct Claim {
   std::string because = {};  ///< not empty: why it is not reproduced; there are then no suite and no rows
 };
 
+/// Holds the claims of a file, and what stands above them on a page.
+struct Claims {
+  std::string title, preface;  ///< of one line; Markdown of any number
+  std::vector<Claim> all;
+};
+
 /// Reads claims from TOML. Throws UsageError that names file, line and column.
-LIMN_API std::vector<Claim> parseClaims(std::string_view toml, const std::string& fileName);
-LIMN_API std::vector<Claim> readClaims(const std::filesystem::path& path);
+LIMN_API Claims parseClaims(std::string_view toml, const std::string& fileName);
+LIMN_API Claims readClaims(const std::filesystem::path& path);
 
 /// Returns Markdown: how to read it, with the rule of each verdict; a table per chapter (the part of `where`
 /// before the first dot) with the ratio measured at the suite's settings, the number of turns behind it and

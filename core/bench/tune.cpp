@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
 
 #include "core/bench/private/comparison.h"
 
@@ -59,8 +60,10 @@ TuneAxis tuneAxis(const std::string& technique, const Parameter& parameter, int 
 }
 
 std::size_t settingCount(const TuneSpace& space) {
+  constexpr std::size_t most = std::numeric_limits<std::size_t>::max();
   std::size_t count = 1;
-  for (const TuneAxis& axis : space.axes) count *= axis.values.size();
+  for (const TuneAxis& axis : space.axes)
+    count = count > most / std::max<std::size_t>(axis.values.size(), 1) ? most : count * axis.values.size();
   return count;
 }
 

@@ -42,7 +42,7 @@ struct TuneSpace {
   std::vector<TuneAxis> axes;
 };
 
-/// Returns the number of settings.
+/// Returns the number of settings, or the largest std::size_t where there are more.
 LIMN_API std::size_t settingCount(const TuneSpace& space);
 
 /// Names a setting of one of several spaces.

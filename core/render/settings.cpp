@@ -104,8 +104,9 @@ void checkTechniques(const std::vector<TechniqueUse>& techniques, Term term) {
 }
 
 int bouncesOf(Term term, const std::vector<TechniqueUse>& techniques) {
-  if (term != Term::indirect && term != Term::subsurface && term != Term::final) return 0;
-  int bounces = term == Term::indirect ? 1 : 0;
+  const TermBounces taken = termInfo(term).bounces;
+  if (taken == TermBounces::none) return 0;
+  int bounces = taken == TermBounces::fromOne ? 1 : 0;
   for (const TechniqueUse& use : techniques)
     if (contains(termsOf(use), Term::indirect)) bounces = std::max(bounces, parameterOr(use, "bounces", 1));
   return bounces;

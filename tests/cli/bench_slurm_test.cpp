@@ -155,6 +155,15 @@ TEST_F(BenchSlurm, RefusesWhileThePartsRunThoughTheMergingWasNotTaken) {
   expectRefused(submitted(), 1, {"is not finished", "squeue --jobs 41 ", "scancel 41 "});
 }
 
+/// The job that merges locks the folder, too, and would fail beside a command that has it.
+TEST_F(BenchSlurm, ARefusedCommandLeavesTheFolderToTheJobs) {
+  slurmThatWaits();
+  ASSERT_EQ(submitted().status, 0);
+  program("squeue", "if [ -e '" + (out_ / ".lock").string() + "' ]; then touch \"$0.locked\"; fi\necho 42\n");
+  expectRefused(submitted(), 1, {"is not finished"});
+  EXPECT_FALSE(fs::exists(folder_ / "bin/squeue.locked"));
+}
+
 TEST_F(BenchSlurm, TasksHaveANodeForThemselvesAndAreQueuedAgainWhereItIsLost) {
   slurmThatWaits();
   const Outcome outcome = submitted({"--nodes", "3"});
@@ -225,6 +234,13 @@ TEST_F(BenchSlurm, TasksAreQueuedAgainThreeTimes) {
   EXPECT_EQ(requeued(killed, 137, "2"), "requeue 41_7\n");
   EXPECT_EQ(requeued(killed, 137, "3"), "");
   EXPECT_EQ(requeued("sh -c 'exit 1'", 1, ""), "");
+}
+
+/// Every task would end with it.
+TEST_F(BenchSlurm, ABackEndThatDoesNotExistIsRefusedAtOnce) {
+  slurmThatWaits();
+  expectRefused(submitted({"--backend", "metal"}), 2, {"metal", "egl"});
+  EXPECT_FALSE(fs::exists(folder_ / "bin/sbatch.words"));
 }
 
 TEST_F(BenchSlurm, MergingRefusesWhereNoFolderHasRows) {

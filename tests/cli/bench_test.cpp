@@ -154,6 +154,8 @@ TEST_F(BenchCommand, AFailureInALaterFolderLeavesTheEarlierRowToTheReproduction)
     const Outcome outcome = limn(arguments);
     EXPECT_EQ(outcome.status, 0) << outcome.err;
     const std::string page = contents(folder_ / "page.md");
+    EXPECT_THAT(page,
+                testing::StartsWith("# What was published, and what is measured here\n\nMade by `limn"));
     return page.substr(page.find("| 7.6, table |"));
   };
   EXPECT_THAT(reproduced({"later"}), testing::HasSubstr("| not measured |"));

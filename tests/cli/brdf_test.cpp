@@ -164,6 +164,13 @@ TEST_F(BrdfCommand, WrongUsageIsOneLine) {
   // Before the source is read.
   expectRefused(limn({"brdf", "fit", path("none.bsdf"), "--fit", "svd", "--texels", "49"}), 2,
                 {"--texels 49", "--fit svd", "48"});
+  for (const auto& [kind, flag] : {std::pair("dfg", "--no-warp"),
+                                   {"pqp", "--no-warp"},
+                                   {"svd", "--no-warp"},
+                                   {"svd", "--no-refine"},
+                                   {"trilinear", "--no-floor"}})
+    expectRefused(limn({"brdf", "fit", "metal:0.5", "--fit", kind, flag}), 2,
+                  {flag, kind, "does not change"});
   expectRefused(limn({"brdf", "simulate", "groove.png"}), 2, {"groove.png", ".bsdf"});
   for (const char* colour : {"1,2", "0.1,0.2,0.3,", "1.5", "red", "", "-0.1"})
     expectRefused(limn({"brdf", "simulate", path("a.bsdf"), "--rising", colour}), 2,

@@ -44,6 +44,39 @@ TEST(CommandLine, NoSeedStandsForAnother) {
     expectRefused(limn({"reference", kCornellBox, "--out", "a.exr", "--seed", seed}), 2, {"--seed", seed});
 }
 
+/// C reads 010 as 8, and so does CLI11.
+TEST(CommandLine, WholeNumbersAreDecimal) {
+  const TemporaryFolder folder;
+  const auto with = [&](const char* spp) {
+    return limn({"reference", kCornellBox, "--term", "direct", "--size", "16x12", "--spp", spp, "--out",
+                 folder / "r.exr"});
+  };
+  for (const char* ten : {"010", "+10", "1e1"}) {
+    const Outcome outcome = with(ten);
+    ASSERT_EQ(outcome.status, 0) << outcome.err;
+    EXPECT_THAT(outcome.out, HasSubstr(": 10 samples per pixel"));
+  }
+  for (const char* none : {"0x10", "10.5", "10a", "0", "99999999999999999999"})
+    expectRefused(with(none), 2, {"--spp", none, "1 to 16777216"});
+}
+
+/// CLI11 takes what stands behind the value of such an option for a further value.
+TEST(CommandLine, RepeatableOptionsTakeOneValueEach) {
+  const TemporaryFolder folder;
+  const std::string picture = folder / "r.png", out = folder / "out";
+  for (const auto& [option, value] :
+       {std::pair("--set", "pcf.kernel=3"), {"--set-light", "key.intensity=1"}}) {
+    const Outcome outcome =
+        limn({"render", "--technique", "pcf", option, value, "balls", "--size", "16x12", "--out", picture});
+    EXPECT_EQ(outcome.status, 0) << outcome.err;
+  }
+  expectRefused(limn({"bench", "--filter", "no such case", "quick", "--out", out}), 2,
+                {"quick", "fits the filter"});
+  expectRefused(
+      limn({"tune", "--techniques", "pcf", "--set", "pcss.bias=1", "balls", "--max-ms", "1", "--out", out}),
+      2, {"'pcss.bias=1'"});
+}
+
 /// No comparison holds with NaN, so that a range that asks whether a value lies outside lets it in.
 TEST(CommandLine, NoRealOptionTakesNan) {
   std::vector<std::vector<std::string>> commands{{"brdf", "simulate"}};

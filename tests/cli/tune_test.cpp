@@ -81,6 +81,22 @@ TEST_F(TuneCommand, TheCommandNamesTheBackEndThatWasMeasured) {
   EXPECT_THAT(outcome.out, testing::HasSubstr(" --backend osmesa --out tuned.png\n"));
 }
 
+/// The reference of a whole picture has no bounces unless some are asked for.
+TEST_F(TuneCommand, TechniquesAreAskedForWhatTheReferenceHas) {
+  const auto answer = [&](std::vector<std::string> more) {
+    more.insert(more.end(),
+                {"--term", "final", "--techniques", "implicit_visibility", "--set",
+                 "implicit_visibility.bins=8", "--set", "implicit_visibility.longest_edge=1", "--set",
+                 "implicit_visibility.glossy_bins=0", "--max-error", "rmse=10", "--json"});
+    const Outcome outcome = tune(more);
+    EXPECT_EQ(outcome.status, 0) << outcome.err;
+    const auto parsed = nlohmann::json::parse(outcome.out, nullptr, false);
+    return parsed.is_object() ? parsed["answer"]["technique"].get<std::string>() : std::string();
+  };
+  EXPECT_EQ(answer({}), "implicit_visibility:visibility+environment");
+  EXPECT_EQ(answer({"--bounces", "1"}), "implicit_visibility");
+}
+
 /// As everywhere that --set is given.
 TEST_F(TuneCommand, TheLastValueOfAParameterCounts) {
   const Outcome outcome =
@@ -154,6 +170,7 @@ TEST_F(TuneCommand, SaysWhatComesNearestToALimitThatNothingKeeps) {
               testing::AllOf(testing::HasSubstr("no setting takes at most 0.001 ms"),
                              testing::HasSubstr("shadow_map_size=64"), testing::HasSubstr("direct")));
   EXPECT_THAT(loud.err, testing::Not(testing::HasSubstr("noise"))) << "a limit of time";
+  std::ofstream(folder_ / "out/tuned.toml") << "# of a search that found something\n";
   // No reference of 4 samples tells such an error from its own.
   const Outcome exact = tune({"--techniques", "hard_shadow_map", "--set",
                               "hard_shadow_map.shadow_map_size=64", "--max-error", "rmse=1e-9"});
@@ -182,6 +199,9 @@ TEST_F(TuneCommand, QuestionsThatCannotBeAskedAreRefusedAtOnce) {
   expectRefused(tune({"--max-ms", "10", "--techniques", "pcf", "--set", "pcf.kernel"}), 2,
                 {"--set 'pcf.kernel'", "TECHNIQUE.PARAMETER=VALUE"});
   expectRefused(tune({"--max-ms", "10", "--techniques", "pcf,pcss,pcf"}), 2, {"pcf is named twice"});
+  expectRefused(limn({"tune", "cornell_box", "--term", "indirect", "--techniques", "clustered_visibility",
+                      "--steps", "12", "--exhaustive", "--max-ms", "10", "--out", folder_ / "out"}),
+                2, {"--exhaustive: the grid has ", "at most 100000", "--set"});
   EXPECT_FALSE(fs::exists(folder_ / "out/results.jsonl"));
 }
 

@@ -42,13 +42,13 @@ Row row(const std::string& technique, double ms, const std::string& parameter = 
 
 /// The line of the only claim's table.
 std::string line(const std::vector<Row>& rows, const std::string& claim = kClaim) {
-  const std::string page = reproductionMarkdown(parseClaims(claim, "c"), rows);
+  const std::string page = reproductionMarkdown(parseClaims(claim, "c").all, rows);
   const std::size_t begin = page.find("| 7.6, table |");
   return page.substr(begin, page.find('\n', begin) - begin);
 }
 
 TEST(Reproduction, RatiosAreMeasuredBetweenTheRowsThatFit) {
-  const auto claims = parseClaims(kClaim, "c");
+  const auto claims = parseClaims(kClaim, "c").all;
   ASSERT_EQ(claims.size(), 1u);
   const std::vector<Row> rows = {row("pcss", 30, "samples"), row("vssm", 2), row("vssm", 1, "cells")};
   const std::string page = reproductionMarkdown(claims, rows);
@@ -65,7 +65,7 @@ TEST(Reproduction, MeasuredWithNamesOnlySuitesThatAnswerAClaim) {
       "[[claims]]\nwhere = \"7.6\"\nwhat = \"other\"\nmeasure = \"frame\"\nthesis = 2\nsuite = \"ch5\"\n"
       "slow = [\"/cssm?\"]\nfast = [\"vssm$\"]\n";
   const auto page = [&](const std::vector<Row>& rows) {
-    return reproductionMarkdown(parseClaims(kClaim + other, "c"), rows);
+    return reproductionMarkdown(parseClaims(kClaim + other, "c").all, rows);
   };
   const std::string bench5 = "build/bin/limn bench ch5 --out out/ch5\n",
                     bench7 = "build/bin/limn bench ch7 --out out/ch7\n",
@@ -140,7 +140,7 @@ TEST(Reproduction, UntimedRowsStandBackBehindTimedOnes) {
 
 TEST(Reproduction, AmbiguousClaimsAreAnError) {
   const Row rows[] = {row("pcss", 30, "samples"), row("pcss", 30, "other"), row("vssm", 1)};
-  EXPECT_THROW(reproductionMarkdown(parseClaims(kClaim, "c"), rows), Error);
+  EXPECT_THROW(reproductionMarkdown(parseClaims(kClaim, "c").all, rows), Error);
 }
 
 TEST(Reproduction, BothSidesAreOfOneRendererAndMachine) {
@@ -341,6 +341,17 @@ TEST(Reproduction, WhatIsNotReproducedSaysWhy) {
     EXPECT_THROW(parseClaims(missing + more, "c"), UsageError) << more;
 }
 
+TEST(Reproduction, ClaimsHaveTheTitleOfTheirPage) {
+  const Claims other = parseClaims(
+      "title = \"Radiance caching\"\npreface = [\"On a GPU of 2019.\", \"Ratios alone.\"]\n" + kClaim, "c");
+  EXPECT_EQ(other.title, "Radiance caching");
+  EXPECT_EQ(other.preface, "On a GPU of 2019.\nRatios alone.");
+  EXPECT_EQ(other.all.size(), 1u);
+  const Claims untitled = parseClaims(kClaim, "c");
+  EXPECT_THAT(untitled.title, Not(HasSubstr("thesis")));
+  EXPECT_EQ(untitled.preface, "");
+}
+
 TEST(Reproduction, BrokenClaimsNameTheirPlace) {
   for (const std::string& text : {std::string("x = 1"), std::string("[[claims]]\n"), kClaim + "typo = 1\n",
                                   kClaim + "[[claims]]\nwhere = 1\n", std::string("[[claims]")})
@@ -361,7 +372,7 @@ TEST(Reproduction, DeeplyNestedClaimsAreRefusedBeforeParsing) {
 /// Of everything that `limn bench thesis` measures, in one folder, in the turns that its suites ask for.
 TEST(Reproduction, TheThesissSuiteMeasuresEveryClaimOnce) {
   const std::filesystem::path folder = std::filesystem::path(limn::test::kSourceDir) / "benchmarks";
-  const auto claims = readClaims(folder / "reproduction.claims");
+  const auto claims = readClaims(folder / "reproduction.claims").all;
   EXPECT_GE(std::ranges::count_if(claims, [](const Claim& claim) { return claim.because.empty(); }), 25);
   std::vector<Row> rows;
   for (const Case& what : readSuite(folder / "thesis.toml").cases) {

@@ -41,6 +41,13 @@ TEST(TuneSpace, NamesOnlyWhatIsNotTheDefault) {
   EXPECT_THAT(changedParameters(space, {0, {2, 1}}), ElementsAre(Pair("t.a", "4"), Pair("t.b", "16")));
 }
 
+TEST(TuneSpace, CountsNoGridAsASmallOneThatIsLargerThanNumbersAre) {
+  TuneSpace space{"t", {}};
+  for (int axis = 0; axis < 16; ++axis)
+    space.axes.push_back({"t.a", std::vector<std::string>(16, "1"), 0});  // 2 to the power 64
+  EXPECT_EQ(settingCount(space), std::numeric_limits<std::size_t>::max());
+}
+
 TEST(TunePlan, LooksAtSmallPicturesThatAreNotMostlySilhouettes) {
   EXPECT_EQ(tunePlan(1280, 720, 10, 5).look.divisor, 4);
   EXPECT_EQ(tunePlan(256, 192, 10, 5).look.divisor, 2);

@@ -136,12 +136,13 @@ TEST(BouncesOf, FollowsTheParameterOfWhatAnswersIndirect) {
       several("several", Term::visibility | Term::indirect, kBounces);
   TechniqueUse more = several.use();
   more.parameters.set("bounces", "3");
-  for (const Term term : {Term::indirect, Term::final}) {
+  for (const Term term : {Term::indirect, Term::final, Term::subsurface, Term::specular}) {
     EXPECT_EQ(bouncesOf(term, {once.use()}), 1);
     EXPECT_EQ(bouncesOf(term, {several.use()}), 2);
     EXPECT_EQ(bouncesOf(term, {shadows.use(), more}), 3);
   }
-  EXPECT_EQ(bouncesOf(Term::final, {shadows.use()}), 0) << "it has no indirect light to count";
+  for (const Term term : {Term::final, Term::subsurface, Term::specular})
+    EXPECT_EQ(bouncesOf(term, {shadows.use()}), 0) << "it has no indirect light to count";
   EXPECT_EQ(bouncesOf(Term::indirect, {}), 1) << "there is no such picture without a bounce";
   EXPECT_EQ(bouncesOf(Term::visibility, {several.use()}), 0);
 }
