@@ -4,12 +4,12 @@
 
 #include <algorithm>
 #include <bit>
-#include <cstring>
 #include <string>
 #include <utility>
 #include <vector>
 
 #include "core/base/error.h"
+#include "core/base/same_bytes.h"
 #include "core/caustics/private/light_reach.h"
 #include "core/caustics/ray_lists.h"
 #include "core/caustics/specular_buffers.h"
@@ -26,11 +26,6 @@ using frame::Access;
 using frame::TextureHandle;
 
 constexpr int kGroupSide = 8;
-
-template <class T>
-bool sameBytes(const std::vector<T>& a, const std::vector<T>& b) {
-  return a.size() == b.size() && (a.empty() || std::memcmp(a.data(), b.data(), a.size() * sizeof(T)) == 0);
-}
 
 /// The light as its map of the specular objects sees it: finite lights look at the middle of the objects.
 glsl::Light aimed(const glsl::Light& light, const glm::vec3& origin, const scene::Bounds& objects) {

@@ -9,6 +9,7 @@
 #include <set>
 #include <tuple>
 
+#include "core/base/same_bytes.h"
 #include "core/gpu_scene/gpu_scene_data.h"
 #include "core/gpu_scene/light_textures.h"
 #include "core/scene/camera.h"
@@ -176,9 +177,7 @@ template <class T>
 bool GpuScene::Implementation::upload(gpu::Buffer& buffer, const char* label, std::vector<T>& current,
                                       std::vector<T>& next) {
   const size_t bytes = next.size() * sizeof(T);
-  const bool same =
-      current.size() == next.size() && (bytes == 0 || std::memcmp(current.data(), next.data(), bytes) == 0);
-  if (buffer && same) return false;
+  if (buffer && sameBytes(current, next)) return false;
   if (!buffer || buffer.size() < bytes) buffer = gpu::Buffer(device, label, bytes, gpu::BufferUse::updated);
   buffer.update(0, next.data(), bytes);
   current.swap(next);

@@ -5,9 +5,9 @@
 #include <algorithm>
 #include <bit>
 #include <cmath>
-#include <cstring>
 
 #include "core/base/error.h"
+#include "core/base/same_bytes.h"
 #include "core/scene/draw_instance.h"
 #include "core/scene/instance_areas.h"
 
@@ -69,11 +69,6 @@ bool invert(const glm::mat4& objectToWorld, glsl::RayBody& body) {
 void toWorld(const scene::Primitive& primitive, const glm::mat4& place, std::vector<glm::vec3>& positions) {
   positions.clear();
   for (const glm::vec3& p : primitive.positions) positions.emplace_back(place * glm::vec4(p, 1));
-}
-
-template <class T>
-bool same(const std::vector<T>& a, const std::vector<T>& b) {
-  return a.size() == b.size() && (a.empty() || std::memcmp(a.data(), b.data(), a.size() * sizeof(T)) == 0);
 }
 
 }  // namespace
@@ -384,7 +379,7 @@ bool RayGeometryService::placeBodies(const scene::Pose& pose) {
     boxes_.push_back(glsl::ray_box_grown({bounds.low, bounds.high}));
     placed_.push_back(draw);
   }
-  if (same(bodies_, nextBodies_) && same(topBoxes_, boxes_)) return false;
+  if (sameBytes(bodies_, nextBodies_) && sameBytes(topBoxes_, boxes_)) return false;
   bodies_ = nextBodies_;
   topBoxes_ = boxes_;
   top_.clear();

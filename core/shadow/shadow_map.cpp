@@ -3,9 +3,9 @@
 #include <fmt/format.h>
 
 #include <algorithm>
-#include <cstring>
 
 #include "core/base/error.h"
+#include "core/base/same_bytes.h"
 #include "core/shading/ltc_table.h"
 #include "core/shadow/light_fit.h"
 #include "core/shadow/private/map_memory.h"
@@ -19,11 +19,6 @@ constexpr int64_t kKeptBytesPerTexel = 8;        // linear depth, and rasterised
 constexpr int64_t kReflectiveBytesPerTexel = 8;  // normal, and albedo or instance, on top
 constexpr int64_t kKeptLimit = int64_t{256}
                                << 20;  // bytes of all maps that are kept; what is derived comes on top
-
-template <class T>
-bool sameBytes(const std::vector<T>& a, const std::vector<T>& b) {
-  return a.size() == b.size() && std::memcmp(a.data(), b.data(), a.size() * sizeof(T)) == 0;
-}
 
 std::string_view projectionName(const LightLayout& layout) {
   if (layout.projection == glsl::shadow_orthographic) return "orthographic";
