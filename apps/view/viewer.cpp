@@ -11,6 +11,8 @@
 #include <algorithm>
 #include <cmath>
 #include <fstream>
+#include <iterator>
+#include <utility>
 
 #include "apps/view/display_image.h"
 #include "apps/view/pace.h"
@@ -114,6 +116,7 @@ void ViewerWindow::listen() {
   glfwSetKeyCallback(window, [](GLFWwindow* w, int key, int scancode, int action, int modifiers) {
     auto& self = *static_cast<ViewerWindow*>(glfwGetWindowUserPointer(w));
     if (action == GLFW_RELEASE) return;
+    self.tapped_.push_back(letterOf(key, scancode));
     const KeyPress pressed{letterOf(key, scancode), (modifiers & GLFW_MOD_CONTROL) != 0,
                            (modifiers & GLFW_MOD_SHIFT) != 0};
     const bool again = pressed.control && pressed.key == GLFW_KEY_Z;  // while it is held
@@ -294,6 +297,17 @@ PictureOrder ViewerWindow::order() const {
   return order;
 }
 
+/// Begins a frame of ImGui in which every key is new that was pressed since the last frame: fields that are
+/// typed into see Return, however long the frame took in which it was tapped.
+void ViewerWindow::beginFrame() {
+  ImGuiIO& io = ImGui::GetIO();
+  const std::vector<bool> down(std::begin(io.KeysDown), std::end(io.KeysDown));
+  for (const int key : std::exchange(tapped_, {}))
+    if (key != GLFW_KEY_UNKNOWN) io.KeysDown[key] = true;
+  ImGui::NewFrame();
+  std::ranges::copy(down, io.KeysDown);
+}
+
 void ViewerWindow::postOrder() {
   PictureOrder wanted = order();
   if (posted_ && same(*posted_, wanted)) return;
@@ -314,7 +328,7 @@ void ViewerWindow::frame() {
   if (!messageIsProblem_ && now - messageAt_ > kMessageSeconds) message_.clear();
   ImGui_ImplOpenGL3_NewFrame();
   ImGui_ImplGlfw_NewFrame();
-  ImGui::NewFrame();
+  beginFrame();
   panels();
   pictureArea();
   if (inspection_) inspectorWindow();

@@ -134,9 +134,13 @@ void ViewerWindow::press(const KeyPress& pressed) {
   if (key == GLFW_KEY_PAGE_UP && step_ > 0) chooseStep(step_ - 1);
 }
 
-/// What is pressed while the first scene is being opened waits for it, unless it is typed into a text field.
+/// What is pressed while the first scene is being opened waits for it. A text field takes all but function
+/// keys.
 void ViewerWindow::handleKeys() {
-  if (ImGui::GetIO().WantTextInput) pressed_.clear();
+  const auto typed = [](const KeyPress& pressed) {
+    return pressed.key < GLFW_KEY_F1 || pressed.key > GLFW_KEY_F25;
+  };
+  if (ImGui::GetIO().WantTextInput) std::erase_if(pressed_, typed);
   if (!facts_->scene) {
     if (std::ranges::find(pressed_, GLFW_KEY_ESCAPE, &KeyPress::key) != pressed_.end()) message_.clear();
     if (!opening_) pressed_.clear();

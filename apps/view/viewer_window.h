@@ -44,6 +44,7 @@ class ViewerWindow {
   // --- viewer.cpp: the loop
   void listen();
   void frame();
+  void beginFrame();
   void takeFacts();
   void adopt(const SceneFacts& scene, const SceneFacts* before);
   Edit present() const;
@@ -177,6 +178,7 @@ class ViewerWindow {
   double lastChange_ = 0, lastFrame_ = 0;
   bool playing_ = false, framePanelOpen_ = false, lightPanelOpen_ = false;
   std::vector<KeyPress> pressed_;  ///< since the last frame
+  std::vector<int> tapped_;        ///< keys that were pressed since the last frame of ImGui
   size_t step_ = 0;
   std::string message_;  ///< the last problem, or a result of the last seconds
   bool messageIsProblem_ = false;

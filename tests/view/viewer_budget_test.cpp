@@ -10,11 +10,9 @@ const char* const kArguments = "cornell_box --technique vssm --size 300x432 --op
 
 class ViewerBudgetTest : public ViewerWindowTest {
  protected:
-  /// Types the techniques to choose from, and makes no step from their defaults. No key is answered while the
-  /// field has the keyboard, so that its frames cannot be awaited: each takes less than two seconds.
+  /// Types the techniques to choose from, and makes no step from their defaults.
   static std::string choose(const std::string& techniques) {
-    return "point 250 210; xdotool click 1; sleep 2; xdotool type " + techniques +
-           "; sleep 2; xdotool key Return; sleep 2; frames 2; click 112 233\n";
+    return "click 250 210; enter " + techniques + "; click 112 233\n";
   }
   /// Starts the search; `tune` holds its process then, and `command` its arguments.
   static std::string search() {

@@ -17,13 +17,15 @@ using json = nlohmann::json;
 
 class ViewerEditTest : public ViewerWindowTest {
  protected:
-  /// Types a number into the slider at that place, which is a text field after ctrl and a click. No key is
-  /// answered while it has the keyboard, so that its frames cannot be awaited: each takes less than a second.
-  static std::string type(const std::string& place, const std::string& number) {
+  /// Makes a text field of the slider at that place. Function keys do nothing while ctrl is held, so that
+  /// frames cannot be awaited: each takes less than two seconds.
+  static std::string clickWithCtrl(const std::string& place) {
     return "point " + place +
-           "; xdotool keydown ctrl; sleep 1; xdotool click 1; sleep 1; xdotool keyup ctrl; sleep 1\n"
-           "xdotool type -- " +
-           number + "; sleep 1; xdotool key Return; sleep 1; frames 2\n";
+           "; xdotool keydown ctrl; sleep 2; xdotool click 1; sleep 2; xdotool keyup ctrl; frames 2\n";
+  }
+  /// Types a number into the slider at that place.
+  static std::string type(const std::string& place, const std::string& number) {
+    return clickWithCtrl(place) + "enter " + number + "\n";
   }
   /// The number that follows this text in a command.
   static double numberAfter(const std::string& text, const std::string& command) {
@@ -112,6 +114,20 @@ TEST_F(ViewerEditTest, TypedNumbersAreOnesThatTheCommandAccepts) {
   ASSERT_EQ(exposed.status, 0) << exposed.err;
   EXPECT_THAT(command("brighter.exr"), testing::HasSubstr("--exposure 20 "));
   EXPECT_THAT(command("brightest.exr"), testing::HasSubstr("--exposure 60 "));
+}
+
+/// Return ends what is typed, however short its tap and however long the frame in which it came; undo is the
+/// window's again then.
+TEST_F(ViewerEditTest, ATapWithinAFrameIsSeen) {
+  const Outcome outcome =
+      view("cornell_box --technique hard_shadow_map --size 160x212 --open scene --save a.exr",
+           "save first.exr; " + clickWithCtrl("300 113") +
+               "xdotool type 20; save typed.exr; kill -STOP $viewer; xdotool key Return; kill -CONT $viewer\n"
+               "frames 2; xdotool key ctrl+z; save undone.exr");
+  ASSERT_EQ(outcome.status, 0) << outcome.err;
+  EXPECT_EQ(outcome.err, "");
+  EXPECT_THAT(command("typed.exr"), testing::HasSubstr("--exposure 20 ")) << "F5 while the text is open";
+  EXPECT_EQ(command("undone.exr"), command("first.exr"));
 }
 
 /// A light is marked as changed when a handle has moved it, not when it was only clicked.

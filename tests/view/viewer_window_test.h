@@ -29,8 +29,8 @@ class ViewerWindowTest : public ::testing::Test {
   /// `await FILE` waits for a file, `hear TEXT N` until the text was said N times, `frames N` until the
   /// window has been drawn so often with all that was done before, `save FILE` for the picture of the moment,
   /// which limn-view saves as a.exr, `focused` until keys reach the window. `point X Y` and `click X Y` are
-  /// the mouse's, `drop FILE` drops one on the window; the window is closed at the end. At most `seconds`.
-  /// Ends with status 8 as soon as the viewer has ended by itself.
+  /// the mouse's, `enter TEXT` types it and Return, `drop FILE` drops one on the window; the window is closed
+  /// at the end. At most `seconds`. Ends with status 8 as soon as the viewer has ended by itself.
   Outcome view(const std::string& arguments, const std::string& script, int seconds = 400,
                const std::map<std::string, std::string>& environment = {}) {
     const std::string text =
@@ -41,13 +41,15 @@ class ViewerWindowTest : public ::testing::Test {
         "hear() { for i in $(seq 1200); do [ $(grep -c \"$1\" said) -ge $2 ] && return; alive; sleep .05; "
         "done; "
         "echo not said: $1 >&2; }\n" +  //
-        // Keys are answered once in a frame, except while the dialog is open; F6 writes a suite right away.
+        // Keys are answered once in a frame, except while the dialog is open, and function keys also while a
+        // text field has the keyboard; F6 writes a suite right away.
         "frames() { for n in $(seq $1); do rm -f a.toml; xdotool key F6; await a.toml; done; }\n" +
         "save() { xdotool key F5; await a.exr; mv a.exr $1; }\n" +  //
         "focused() { until xdotool windowfocus $window 2> unfocused; do alive; sleep .1; done; }\n" +
         "point() { xdotool mousemove $1 $2; frames 2; }\n" +
         // Down, up, and what opens shows itself two frames later.
-        "click() { point $1 $2; xdotool click 1; frames 4; }\n" +  //
+        "click() { point $1 $2; xdotool click 1; frames 4; }\n" +                      //
+        "enter() { xdotool type -- $1; frames 2; xdotool key Return; frames 2; }\n" +  //
         "drop() { '" + kBinaryDir +
         "/tests/limn_drop_files' $window \"$1\" || echo $1 was not taken >&2; }\n" + "'" + kBinaries +
         "limn-view' " + arguments + " --gl-debug > said & viewer=$!\n" +
