@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <array>
+#include <atomic>
 #include <cstring>
 
 #include "apps/limn/options.h"
@@ -11,12 +12,16 @@
 namespace limn::app {
 namespace {
 
-// A signal handler reaches nothing but globals.
+// A signal handler reaches nothing but globals. Any thread may run it, at any time: of the two texts it takes
+// the one that was finished last.
 volatile std::sig_atomic_t noted = 0;
-std::array<char, 1024> words{};
+std::array<std::array<char, 1024>, 2> texts{};
+std::atomic<const char*> words{texts[0].data()};
+static_assert(decltype(words)::is_always_lock_free);
 
 void endAtOnce(int signal) {
-  [[maybe_unused]] const ssize_t written = write(errorDescriptor(), words.data(), std::strlen(words.data()));
+  const char* const text = words;
+  [[maybe_unused]] const ssize_t written = write(errorDescriptor(), text, std::strlen(text));
   _exit(128 + signal);
 }
 
@@ -33,16 +38,11 @@ void handle(void (*handler)(int)) {
   sigaction(SIGTERM, &action, nullptr);
 }
 
-/// No signal finds the words half-written.
 void setWords(const std::string& line) {
-  sigset_t both, before;
-  sigemptyset(&both);
-  sigaddset(&both, SIGINT);
-  sigaddset(&both, SIGTERM);
-  pthread_sigmask(SIG_BLOCK, &both, &before);
-  words.fill('\0');
-  std::copy_n(line.begin(), std::min(line.size(), words.size() - 1), words.begin());
-  pthread_sigmask(SIG_SETMASK, &before, nullptr);
+  std::array<char, 1024>& next = texts[words == texts[0].data() ? 1 : 0];
+  next.fill('\0');
+  std::copy_n(line.begin(), std::min(line.size(), next.size() - 1), next.begin());
+  words = next.data();
 }
 
 }  // namespace
@@ -57,7 +57,7 @@ FormerHandlers::~FormerHandlers() {
   sigaction(SIGTERM, &term_, nullptr);
 }
 
-LastWords::LastWords(const std::string& line) : formerLine_(words.data()) {
+LastWords::LastWords(const std::string& line) : formerLine_(words) {
   say(line);
   handle(endAtOnce);
 }

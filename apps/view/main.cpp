@@ -75,7 +75,7 @@ int main(int argc, char** argv) {
     program
         .add_option("--frames", options.frames,
                     "Close the window after this many frames that show the complete picture; 0: keep it open")
-        ->check(CLI::NonNegativeNumber);
+        ->transform(wholeRange(0, 1000000));
     program.add_option("--screenshot", options.screenshot,
                        "When the window closes, write its last content to this .png file");
     program.add_option("--stats", options.stats,

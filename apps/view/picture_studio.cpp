@@ -210,6 +210,19 @@ PictureStudio::Outcome PictureStudio::renderShot(ShownPicture& picture, const re
   return outcome;
 }
 
+/// The second picture, which holds the scene once more: where there is no room for that, the first one stays.
+PictureStudio::Outcome PictureStudio::renderBeside(const render::Settings& settings,
+                                                   const PictureOrder& order,
+                                                   const std::function<bool()>& cancelled) {
+  try {
+    if (!other_) other_ = makePicture(*view_);
+  } catch (const std::exception&) {
+    facts_.other.problem = currentFailure();
+    return Outcome::failed;
+  }
+  return renderShot(*other_, settings, order, cancelled, facts_.other);
+}
+
 /// Where it failed, facts_ say why; where it was cancelled, they are what they were.
 PictureStudio::Outcome PictureStudio::render(const PictureOrder& order,
                                              const std::function<bool()>& cancelled) {
@@ -237,9 +250,8 @@ PictureStudio::Outcome PictureStudio::render(const PictureOrder& order,
   if (outcome == Outcome::done) ms += facts_.picture.ms;
   settings.inspect.reset();
   if (order.beside == Beside::techniques) {
-    if (!other_) other_ = makePicture(*view_);
     settings.techniques = order.others;
-    const Outcome beside = renderShot(*other_, settings, order, cancelled, facts_.other);
+    const Outcome beside = renderBeside(settings, order, cancelled);
     if (beside == Outcome::cancelled) return beside;
     if (beside == Outcome::done) ms += facts_.other.ms;
   } else {

@@ -46,6 +46,8 @@ class PictureStudio {
   Outcome render(const PictureOrder& order, const std::function<bool()>& cancelled = {});
   Outcome renderShot(ShownPicture& picture, const render::Settings& settings, const PictureOrder& order,
                      const std::function<bool()>& cancelled, Shot& shot);
+  Outcome renderBeside(const render::Settings& settings, const PictureOrder& order,
+                       const std::function<bool()>& cancelled);
   void describeLights();
   void describe(const PictureOrder& order);
   void inspect(const PictureOrder& order);

@@ -102,7 +102,7 @@ int runChapter(const Chapter& chapter, int argc, char** argv) {
         ->capture_default_str();
     addSceneFlag(program, scene, "size")->description("Size of the picture in the window, WIDTHxHEIGHT");
     program.add_option("--frames", frames, "Close the window after this many frames; 0: keep it open")
-        ->check(CLI::NonNegativeNumber);
+        ->transform(wholeRange(0, 1000000));
     backend.addTo(program);
     try {
       program.parse(argc, argv);
