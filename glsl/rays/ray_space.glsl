@@ -50,10 +50,10 @@ LIMN_FN bvec4 ray_meets_children(RayNode n, RaySpace r, float end) {
   return bvec4(crossed.x && there.x, crossed.y && there.y, crossed.z && there.z, crossed.w && there.w);
 }
 
-// Whether the triangle lies between the ends of the segment, and the weights of its corners, times a common factor. The three
-// edge functions, Pluecker products, come from the same numbers on both sides of an edge, so that no ray slips between
-// neighbours (Davidovic et al. 2012), and nothing is divided: most rays miss.
-LIMN_FN bool ray_meets_triangle(RaySpace r, vec3 a, vec3 b, vec3 c, float end, LIMN_OUT(vec3) weights) {
+// Whether the triangle lies between the ends of the segment, the weights of its corners, times a common factor, and in `end` where
+// the ray meets it. The three edge functions, Pluecker products, come from the same numbers on both sides of an edge, so that no
+// ray slips between neighbours (Davidovic et al. 2012), and only a hit divides: most rays miss.
+LIMN_FN bool ray_meets_triangle(RaySpace r, vec3 a, vec3 b, vec3 c, LIMN_INOUT(float) end, LIMN_OUT(vec3) weights) {
   a = a - r.origin;
   b = b - r.origin;
   c = c - r.origin;
@@ -67,7 +67,9 @@ LIMN_FN bool ray_meets_triangle(RaySpace r, vec3 a, vec3 b, vec3 c, float end, L
   vec3 normal = cross(edge_ca, edge_ab);
   float slope = dot(normal, r.direction);
   float depth = slope < 0.0f ? -dot(normal, a) : dot(normal, a);
-  return (least >= 0.0f || most <= 0.0f) && slope != 0.0f && depth > 0.0f && depth <= end * abs(slope);
+  bool met = (least >= 0.0f || most <= 0.0f) && slope != 0.0f && depth > 0.0f && depth <= end * abs(slope);
+  if (met) end = depth / abs(slope);
+  return met;
 }
 
 LIMN_END

@@ -1,5 +1,6 @@
-// Rays through the scene: whether anything lies on a segment. rays::RayGeometry (core/rays/ray_geometry.h) declares the
-// blocks, and defines RAY_STACK, the entries that no walk exceeds, and RAY_COVERAGE, 1 where alpha masks let rays pass.
+// Rays through the scene: whether anything lies on a segment, and where its first place is. rays::RayGeometry
+// (core/rays/ray_geometry.h) declares the blocks, and defines RAY_STACK, the entries that no walk exceeds, and RAY_COVERAGE, 1
+// where alpha masks let rays pass.
 #ifndef LIMN_RAY_TRACE_GLSL
 #define LIMN_RAY_TRACE_GLSL
 #include "glsl/rays/ray_coverage.glsl"
@@ -43,20 +44,25 @@ bool ray_covered(uint mask, uint triangle, vec3 weights) {
 }
 #endif
 
-// Whether triangle i of the buffer covers a place between the ends of the segment.
-bool ray_hits(uint i, RaySpace r, float end, RayBody body) {
+// Whether triangle i of the buffer covers a place between the ends of the segment, which `end` becomes then.
+bool ray_hits(uint i, RaySpace r, inout float end, RayBody body) {
   vec3 a = ray_triangles[3u * i].xyz, b = ray_triangles[3u * i + 1u].xyz, c = ray_triangles[3u * i + 2u].xyz;
   vec3 weights;
-  if (!ray_meets_triangle(r, a, b, c, end, weights)) return false;
+  float at = end;
+  if (!ray_meets_triangle(r, a, b, c, at, weights)) return false;
 #if RAY_COVERAGE
   float sum = weights.x + weights.y + weights.z;
-  if (body.coverage != ray_opaque && sum != 0.0) return ray_covered(body.coverage, i - body.first_triangle, weights / sum);
+  if (body.coverage != ray_opaque && sum != 0.0 && !ray_covered(body.coverage, i - body.first_triangle, weights / sum))
+    return false;
 #endif
+  end = at;
   return true;
 }
 
-// Whether anything but body `skip` lies at origin + t direction, 0 < t <= end.
-bool ray_occluded(vec3 origin, vec3 direction, float end, uint skip) {
+// Whether anything but body `skip` lies at origin + t direction, 0 < t <= end, which becomes the t of what was found: the nearest
+// or, in less time, any.
+bool ray_finds(vec3 origin, vec3 direction, inout float end, uint skip, bool nearest) {
+  bool found = false;
   uint stack[RAY_STACK];
   int held = 0;
   int outside = -1;  // entries of the scene's own hierarchy that wait below a body's; < 0: the ray is outside of bodies
@@ -72,7 +78,7 @@ bool ray_occluded(vec3 origin, vec3 direction, float end, uint skip) {
       bvec4 met = ray_meets_children(node, ray, end);
       for (int i = 3; i >= 0; --i)
         if (met[i]) stack[held++] = node.child[i];
-      if (held == 0) return false;
+      if (held == 0) return found;
       if (held == outside) {
         outside = -1;
         ray = ray_space(origin, direction);
@@ -90,16 +96,26 @@ bool ray_occluded(vec3 origin, vec3 direction, float end, uint skip) {
       }
     } else {
       uint after = first + ray_leaf_count(current);
-      for (uint i = first; i < after; ++i)
-        if (ray_hits(i, ray, end, body)) return true;
+      for (uint i = first; i < after; ++i) {
+        if (!ray_hits(i, ray, end, body)) continue;
+        if (!nearest) return true;
+        found = true;
+      }
     }
-    if (held == 0) return false;
+    if (held == 0) return found;
     if (held == outside) {
       outside = -1;
       ray = ray_space(origin, direction);
     }
     current = stack[--held];
   }
+}
+
+bool ray_occluded(vec3 origin, vec3 direction, float end, uint skip) {
+  return ray_finds(origin, direction, end, skip, false);
+}
+bool ray_nearest(vec3 origin, vec3 direction, inout float end, uint skip) {
+  return ray_finds(origin, direction, end, skip, true);
 }
 
 #endif  // LIMN_RAY_TRACE_GLSL

@@ -15,15 +15,30 @@ uniform sampler2D blue_noise;
 uniform uint light_indices[LIGHT_COUNT];
 uniform int rays;
 
-// How far rays start above the receiver: of its distance to the camera, because GPUs snap vertices to a 256th of a pixel, so
-// that a pixel's depth is known to some 2e-5 of it; and no less than coordinates round by, of the largest. Before a rectangle, of
-// which no depth was drawn, rays end by the latter. A lamp without extent may be mounted on a surface, which rounding puts on
-// either side of it, the more so the flatter rays meet it: before that they end by 16 times as much, as the reference's do.
-const float snapping_clearance = 6.103515625e-5;      // 2^-14
+// GPUs snap vertices to a 256th of a pixel, so that a pixel's depth is known to some 2e-5 of it, along a floor seen flatly to ten
+// times as much.
+const float snapping_reach = 2.44140625e-4;       // 2^-12
+const float snapping_clearance = 6.103515625e-5;  // 2^-14
+// What coordinates round by, of the largest. Before a rectangle, of which no depth was drawn, rays end by this. A lamp without
+// extent may be mounted on a surface, which rounding puts on either side of it, the more so the flatter rays meet it: before that
+// they end by 16 times as much, as the reference's do.
 const float rounding_clearance = 9.5367431640625e-7;  // 2^-20
 const float unlimited = 3.0e38;
 
 float largest(vec3 v) { return max(max(abs(v.x), abs(v.y)), abs(v.z)); }
+
+// Where rays from a pixel's surface start, clear of it. A ray from the camera finds the triangle that snapping moved, so that
+// rounding is all that is to be cleared: small triangles shadow each other where rays graze them, and starting above them would
+// lose that. At edges that only the drawn triangle covers the depth has to do.
+vec3 ray_start(vec3 position, vec3 normal) {
+  vec3 way = position - frame.camera_position.xyz;
+  vec3 before = position - snapping_reach * way, segment = 2.0 * snapping_reach * way;
+  float clearance = max(snapping_clearance * length(way), rounding_clearance * largest(position));
+  float at = 1.0;
+  if (!ray_nearest(before, segment, at, no_instance)) return position + clearance * normal;
+  float rounding = rounding_clearance * max(largest(position), frame.scene_radius);
+  return before + at * segment + min(clearance, rounding) * normal;
+}
 
 // What the rays of a pixel towards one light have in common.
 struct ShadowRays {
@@ -90,8 +105,7 @@ void main() {
     if (!view.masked) {
       ShadowRays r;
       r.position = position;
-      r.origin = position + normal * max(snapping_clearance * length(position - frame.camera_position.xyz),
-                                         rounding_clearance * largest(position));
+      r.origin = ray_start(position, normal);
       r.finite = light.type != light_directional;
       r.depth = r.finite ? view.depth : 1.0;
       r.itself = light.own_instance;

@@ -89,6 +89,15 @@ TEST_F(RayTracedAreaLightTest, ConvergesToTheReference) {
   }
 }
 
+/// Rays begin on the triangle that the pixel shows, not above its neighbours.
+TEST_F(RayTracedAreaLightTest, SmallTrianglesShadeEachOther) {
+  const scene::Scene scene = asset("statue");
+  render::Renderer renderer(device(), scene);
+  renderer.configure(rays(128));
+  const Image picture = at(renderer, 0);
+  EXPECT_LT(difference(picture, truth(renderer, scene, 0)), 0.012);
+}
+
 /// The filter takes noise away and leaves what many rays have found, and hard shadows.
 TEST_F(RayTracedAreaLightTest, TheFilterErrsLessWithFewRaysAndLittleMoreWithMany) {
   const scene::Scene scene = asset("balls");
@@ -247,6 +256,32 @@ TEST_F(RayClearanceTest, LeavesCloseToTheCameraShadeTheirFloorFarFromTheOrigin) 
     }
   }
   EXPECT_GT(below, 100);
+}
+
+/// Of a large triangle, whose corners are known less exactly than what is near the camera.
+TEST_F(RayClearanceTest, FloorsOfAnySizeDoNotShadeThemselves) {
+  for (const float half : {1.f, 100.f, 1e4f}) {
+    for (const float turn : {0.f, 0.7f}) {
+      SCOPED_TRACE(testing::Message() << half << " m, turned by " << turn);
+      const glm::mat4 tilt = glm::rotate(glm::mat4(1), turn, glm::normalize(glm::vec3(1, 2, 3)));
+      const auto placed = [&](float x, float y, float z) { return glm::vec3(tilt * glm::vec4(x, y, z, 1)); };
+      scene::Scene scene;
+      scene::Pose pose;
+      test::addMesh(scene, test::floorPrimitive(half, test::addMaterial(scene)));
+      test::addInstance(scene, pose, 0, tilt);
+      test::addLight(
+          pose, test::rectangleLight(placed(0, 4, -3), glm::vec3(tilt * glm::vec4(0, -1, 0, 0)), 0.8f, 0.8f));
+      const scene::CameraPose camera = scene::lookAt(placed(0, 0.6f, 0.5f), placed(0, 0, -1), 0.8f);
+      const test::Answer v = visibility("ray_traced_area_light", {{"filter", "none"}}, scene, pose, camera);
+      int floor = 0;
+      for (size_t i = 0; i < v.instance.size(); ++i) {
+        if (v.instance[i] != 0) continue;
+        ++floor;
+        ASSERT_EQ(v.lights[0][i], 1.f);
+      }
+      EXPECT_GT(floor, 2000);
+    }
+  }
 }
 
 /// Mounted on a ceiling, in whose plane it lies, level or tilted, at any scale: the ceiling does not hide the

@@ -118,7 +118,9 @@ TEST(RaySpaceTest, WeightsAreThoseOfTheCorners) {
   const vec3 a(0, 1, 2), b(3, 1, 0), c(-1, 4, 1), inside = 0.2f * a + 0.3f * b + 0.5f * c;
   const vec3 origin(1, -3, 7);
   vec3 weights;
-  ASSERT_TRUE(glsl::ray_meets_triangle(glsl::ray_space(origin, inside - origin), a, b, c, 1.001f, weights));
+  float end = 1.001f;
+  ASSERT_TRUE(glsl::ray_meets_triangle(glsl::ray_space(origin, inside - origin), a, b, c, end, weights));
+  EXPECT_NEAR(end, 1, 1e-6f);
   weights /= weights.x + weights.y + weights.z;
   EXPECT_NEAR(weights.x, 0.2f, 1e-5f);
   EXPECT_NEAR(weights.y, 0.3f, 1e-5f);
