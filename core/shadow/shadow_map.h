@@ -126,8 +126,8 @@ class LIMN_API ShadowMapService : public FrameService {
 
   /// Returns maps for `lights` (indices into Pose::lights), declared in the graph at the first request; equal
   /// requests share them, and so do requests that differ in `views` alone while no light is cut, or in `fit`
-  /// alone while no map follows the view (MapFit). Throws UsageError when the maps would take more memory or
-  /// layers than the device has.
+  /// alone while no map follows the view (MapFit) and no light has a range. Throws UsageError when the maps
+  /// would take more memory or layers than the device has.
   ShadowMaps request(std::span<const uint32_t> lights, const ShadowMapDesc& desc);
   /// Returns maps for parallel light along `directions` (unit, of propagation) that belongs to no light of
   /// the pose: one orthographic map around the scene for each, and a ShadowLight whose light is

@@ -97,8 +97,8 @@ TEST_F(ShadowMapTest, MapsThatDoNotFollowTheViewAreSharedHoweverTheyAreFitted) {
             sampled.depth);
 }
 
-/// Half cubes do not follow the view. What the light is cut by is then all of the scene, from the request on:
-/// by what lies within its range alone it would be cut, and the graph built again in every frame.
+/// Half cubes do not follow the view. What the light is cut by is still what lies within its range, as
+/// layersOf() says, in every frame: by all of the scene it would not be cut.
 TEST_F(ShadowMapTest, LightsWithARangeAreCutTheSameInEveryFrame) {
   scene::Scene scene;
   addMesh(scene, floorPrimitive(20, addMaterial(scene)));
@@ -113,13 +113,58 @@ TEST_F(ShadowMapTest, LightsWithARangeAreCutTheSameInEveryFrame) {
   const std::vector<uint32_t> lights{0};
   const shadow::ShadowMaps maps = asking.service.request(lights, desc);
   EXPECT_EQ(asking.service.layersOf(0, desc), 20);
-  EXPECT_EQ(maps.layers, 5);
+  EXPECT_EQ(asking.service.layersOf(0, {.size = 64, .views = 0}), 5);
+  EXPECT_EQ(maps.layers, 20);
   asking.graph.output(maps.depth);
   asking.graph.prepare(device(), shaders(), asking.pool);
   asking.graph.execute();
   pose.lights[0].position.x += 0.01f;
   asking.gpuScene.update(pose, camera, {64, 64}, 1);
   EXPECT_FALSE(asking.services.update(asking.graph, pose));
+}
+
+/// What lies within a light's range may fit one map though all of the scene needs a half cube: pictures must
+/// not depend on where the light was when the maps were asked for.
+TEST_F(ShadowMapTest, MapsFollowTheViewAsSoonAsTheLightLetsThem) {
+  scene::Scene scene;
+  addMesh(scene, floorPrimitive(20, addMaterial(scene)));
+  scene::Pose pose;
+  addInstance(scene, pose, 0);
+  addLight(pose, rectangleLight({0, 1, 0}, {0, -1, 0}, 0.5f, 0.5f));
+  pose.lights[0].range = 6;
+  const shadow::ShadowMapDesc desc{.size = 64, .fit = shadow::MapFit::view};
+  const scene::CameraPose camera = scene::frameBounds(pose.bounds);
+  Asking asking(device(), scene, pose, camera);
+  const std::vector<uint32_t> lights{0};
+  const shadow::ShadowMaps maps = asking.service.request(lights, desc);
+  EXPECT_EQ(maps.layers, 5);
+  asking.graph.output(maps.depth);
+  asking.graph.prepare(device(), shaders(), asking.pool);
+  asking.graph.execute();
+  pose.lights[0].position.y = 2;
+  asking.gpuScene.update(pose, camera, {64, 64}, 1);
+  EXPECT_TRUE(asking.services.update(asking.graph, pose));
+  EXPECT_EQ(asking.service.layersOf(0, desc), 1);
+  EXPECT_EQ(asking.service.layersOf(0, {.size = 64}), 5);
+}
+
+/// Cubes, too, which do not follow the view: near planes are a part of the farthest that is lit, and what is
+/// nearer blocks nothing.
+TEST_F(ShadowMapTest, MapsFittedToTheViewEndWithTheRangeOfALight) {
+  scene::Scene scene;
+  addMesh(scene, floorPrimitive(3, addMaterial(scene)));
+  scene::Pose pose;
+  addInstance(scene, pose, 0);
+  addInstance(scene, pose, 0, at(0, 1e4f, 0));
+  addLight(pose, pointLight({0, 0.5f, 0}));
+  pose.lights[0].range = 2;
+  const Maps maps = draw(scene, pose, {0}, {.size = 16, .fit = shadow::MapFit::view});
+  ASSERT_EQ(maps.views.size(), 6u);
+  for (const glsl::ShadowView& view : maps.views) {
+    EXPECT_LT(view.far, 2.01f);
+    EXPECT_LT(view.near, 0.5f);
+  }
+  EXPECT_GT(draw(scene, pose, {0}, {.size = 16}).views[0].near, 0.9f) << "of the whole scene";
 }
 
 TEST_F(ShadowMapTest, MapsFittedToTheViewFollowTheCamera) {
