@@ -111,7 +111,7 @@ class CaseWork {
     };
     callbacks.progress = [&](const bench::Progress& progress) {
       tell(progress);
-      bar.update((progress.turn - 1 + double(progress.index) / progress.count) / progress.turns,
+      bar.update((progress.turn - 1 + double(progress.place) / progress.count) / progress.turns,
                  bench::label(progress.what));
       if (progress.state != bench::Progress::State::failed) return;
       benchSession.forgetScene();

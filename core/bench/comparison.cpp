@@ -74,14 +74,19 @@ std::string measuredText(const Ratio& ratio) {
 }
 
 const Row* quickest(const Table& table, const std::string& technique, const MetricInfo& error,
-                    std::optional<double> limit) {
+                    const Row& against) {
+  const std::optional<double> limit = boundedError(error, errorOf(against));
+  // The error of a penumbra stands beside none of a whole picture, in which lit pixels hide it.
+  const auto isAsGood = [&](const Row& row) {
+    return row.penumbra.has_value() == against.penumbra.has_value() &&
+           boundedError(error, errorOf(row)) <= limit;
+  };
   const auto order = [&](const Row& row) {
     return std::pair(isOutdated(row, table), row.cost.frameMs.median);
   };
   const Row* best = nullptr;
   for (const Row& row : table.rows) {
-    if (!isTimed(row) || row.what.technique != technique || boundedError(error, errorOf(row)) > limit)
-      continue;
+    if (!isTimed(row) || row.what.technique != technique || !isAsGood(row)) continue;
     if (best == nullptr || order(row) < order(*best)) best = &row;
   }
   return best;
@@ -142,8 +147,7 @@ std::string comparisonMarkdown(const Table& table) {
     if (!other(row)) continue;
     Cells cells = ratioCells(table, row, *baseline, row);
     for (const MetricInfo* error : kCompared)
-      appendAtEqual(cells, table, quickest(table, technique, *error, boundedError(*error, errorOf(row))),
-                    row);
+      appendAtEqual(cells, table, quickest(table, technique, *error, row), row);
     text += markdownRow(cells);
   }
   return text;

@@ -127,7 +127,7 @@ EqualError atEqualError(const Claim& claim, const Row& slow, const Found& fast) 
   if (error.noise_floor && error.rmse < *error.noise_floor)
     return {"-: the reference's noise hides the errors"};
   constexpr const MetricInfo& rmse = metricInfo(&Metrics::rmse);
-  const Row* best = quickest(*fast.table, technique, rmse, error.rmse);
+  const Row* best = quickest(*fast.table, technique, rmse, *fast.row);
   if (best == nullptr) return {fmt::format("-: no row of {} reaches {}", technique, shownText(rmse, error))};
   const Pair pair = byFrames(claim.thesis, *best, *fast.row);
   return {fmt::format("{}: {}; differ in {}", pair.withTurns(), settingsName(*best),

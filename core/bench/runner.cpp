@@ -13,6 +13,7 @@
 #include "core/image/error_spectrum.h"
 #include "core/image/metric_table.h"
 #include "core/image/signature.h"
+#include "core/question/question_fields.h"
 #include "core/question/render_command.h"
 #include "core/question/term.h"
 #include "core/render/frame_stats.h"
@@ -139,9 +140,8 @@ class Run {
   }
 
   Summary all() {
-    for (std::size_t i = 0; i < cases_.size(); ++i) measure(i);
-    for (int turn = 2; turn <= turns_; ++turn)
-      for (std::size_t i = 0; i < cases_.size(); ++i) retime(i, turn);
+    for (place_ = 0; place_ < cases_.size(); ++place_) measure(place_);
+    if (turns_ > 1) retimeAll();
     summary_.shortened = shortenedRows(cases_, renderer_, results_.rows());
     return summary_;
   }
@@ -149,8 +149,8 @@ class Run {
  private:
   void report(std::size_t i, int turn, Progress::State state, const std::string& failure = "") const {
     if (!callbacks_.progress) return;
-    callbacks_.progress(
-        {static_cast<int>(i), static_cast<int>(cases_.size()), turn, turns_, cases_[i], state, failure});
+    callbacks_.progress({static_cast<int>(i), static_cast<int>(cases_.size()), static_cast<int>(place_), turn,
+                         turns_, cases_[i], state, failure});
   }
 
   void append(Row row, const std::string& key) {
@@ -205,6 +205,30 @@ class Run {
     report(i, 1, row.failure.empty() ? Progress::State::done : Progress::State::failed, row.failure);
   }
 
+  /// Returns the cases in the order of further turns.
+  std::vector<std::size_t> byScene() const {
+    std::map<std::string, std::size_t> known;
+    std::vector<std::vector<std::size_t>> scenes;
+    for (std::size_t i = 0; i < cases_.size(); ++i) {
+      SceneQuestion scene = cases_[i];
+      for (const QuestionEffect effect : {QuestionEffect::view, QuestionEffect::time, QuestionEffect::lights})
+        copyFields(effect, scene, SceneQuestion());
+      const auto [place, isNew] = known.emplace(questionText(scene), scenes.size());
+      if (isNew) scenes.emplace_back();
+      scenes[place->second].push_back(i);
+    }
+    std::vector<std::size_t> order;
+    for (const std::vector<std::size_t>& scene : scenes)
+      order.insert(order.end(), scene.begin(), scene.end());
+    return order;
+  }
+
+  void retimeAll() {
+    const std::vector<std::size_t> order = byScene();
+    for (int turn = 2; turn <= turns_; ++turn)
+      for (place_ = 0; place_ < order.size(); ++place_) retime(order[place_], turn);
+  }
+
   void retime(std::size_t i, int turn) {
     const Case& c = cases_[i];
     const std::string key = rowKey(c, renderer_);
@@ -229,6 +253,7 @@ class Run {
   ResultsFile& results_;
   const Callbacks& callbacks_;
   int turns_ = 1;
+  std::size_t place_ = 0;  ///< of the case that is looked at, in its turn
   Summary summary_;
   std::optional<Reference> reference_;
   std::string referenceQuestion_;

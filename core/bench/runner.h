@@ -29,6 +29,7 @@ struct Measurement {
 
 struct Progress {
   int index = 0, count = 0;  ///< case number from 0
+  int place = 0;             ///< of the case in its turn, from 0
   int turn = 1, turns = 1;   ///< from 1
   const Case& what;
   enum class State { skipped, started, done, failed } state;
@@ -92,7 +93,8 @@ LIMN_API std::vector<Case> unfinishedCases(std::span<const Case> cases, std::spa
 LIMN_API void restateRows(std::span<const Case> cases, ResultsFile& results,
                           const std::function<Provenance(const Case&)>& provenance);
 
-/// Runs all cases first, then further turns of timing, each of which replaces the rows by longer ones.
+/// Runs all cases first, then further turns of timing, each of which replaces the rows by longer ones. These
+/// go by scene, so that each is opened once in a turn; cases of one scene stay in their order.
 /// `renderer` is recorded in the rows and part of their keys: results of another renderer are measured again.
 /// Rows that hold get the case's title, baseline and limit where these have changed.
 /// Whatever a callback other than `progress` and `provenance` throws is recorded in the case's row, and the

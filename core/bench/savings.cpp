@@ -106,6 +106,8 @@ void look(Comparison& c, render::Renderer& renderer, const scene::CameraPose& ca
   anyMask.background = termInfo(c.forced.term).background;
   const auto side = [&](const Settings& settings, SavingSide& result, Frame& frame) {
     show(renderer, camera, settings);
+    // What the forced frame alone used is kept for one graph, and freed when the next one is built.
+    if (&result == &c.result.without) show(renderer, camera, settings);
     Image image = secondFrame(renderer);
     frame = lastFrame(renderer);
     result.memoryBytes = renderer.memoryBytes();

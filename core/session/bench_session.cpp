@@ -8,7 +8,6 @@
 #include "core/base/file.h"
 #include "core/bench/cost_split.h"
 #include "core/bench/machine.h"
-#include "core/question/question_fields.h"
 #include "core/render/frame_stats.h"
 #include "core/render/supersample.h"
 #include "core/session/view.h"
@@ -23,7 +22,15 @@ struct BenchSession::Loaded {
   render::Renderer renderer;
 
   Loaded(gpu::Device& device, const SceneQuestion& asked)
-      : question(asked), view(open(question)), renderer(device, view.scene) {}
+      : question(asked), view(open(question)), renderer(device, view.scene) {
+    renderer.setTime(view.time, view.animation);
+  }
+
+  /// Shows another question about the same openedScene(). Where it throws, lights may be set in part.
+  void show(const SceneQuestion& asked) {
+    if (session::show(view, question, asked)) renderer.setTime(view.time, view.animation);
+    question = asked;
+  }
 };
 
 TechniqueChoice techniqueChoice(const bench::Case& c) {
@@ -31,12 +38,6 @@ TechniqueChoice techniqueChoice(const bench::Case& c) {
 }
 
 namespace {
-
-/// Leaves out the fields of the view, which load() sets in a scene that is open already.
-bool sameScene(const SceneQuestion& a, SceneQuestion b) {
-  copyFields(QuestionEffect::view, b, a);
-  return a == b;
-}
 
 render::Settings baseSettings(const View& view, Term term, int light) {
   render::Settings settings;
@@ -65,25 +66,14 @@ void BenchSession::forgetScene() {
 }
 
 BenchSession::Loaded& BenchSession::load(const bench::Case& c) {
-  if (!loaded_ || !sameScene(loaded_->question, c)) {
-    loaded_.reset();
-    loaded_ = std::make_unique<Loaded>(device_, c);
-    loaded_->renderer.setTime(loaded_->view.time, loaded_->view.animation);
-    return *loaded_;
-  }
-  View& view = loaded_->view;
-  view.size = {c.width, c.height};
-  view.aa = c.aa;
-  view.unshadowed = c.unshadowed == "on";
-  view.reliefPaths = reliefPathsOf(c.reliefPaths);
-  view.subsurface = subsurfaceModelOf(c.subsurface);
-  if (view.defaultLights) {
-    moveTo(view, c, view.time);
-    loaded_->renderer.setTime(view.time, view.animation);
+  std::unique_ptr<Loaded> kept = std::move(loaded_);  // nothing is loaded where what follows throws
+  if (!kept || openedScene(kept->question) != openedScene(c)) {
+    kept.reset();  // before the next one takes its memory
+    kept = std::make_unique<Loaded>(device_, c);
   } else {
-    view.camera = chooseCamera(c, view.pose, view.framing);
+    kept->show(c);
   }
-  view.light = c.light.empty() ? scene::kNone : findNamed("light", c.light, view.pose.lightNames);
+  loaded_ = std::move(kept);
   return *loaded_;
 }
 

@@ -4,11 +4,9 @@
 
 #include <algorithm>
 #include <exception>
-#include <map>
-#include <set>
+#include <utility>
 
 #include "core/base/error.h"
-#include "core/question/question_fields.h"
 #include "core/session/bench_session.h"
 #include "core/session/find.h"
 #include "core/session/view.h"
@@ -38,13 +36,6 @@ class Lines {
   std::vector<std::string> lines_;
 };
 
-/// The case's scene without what differs among views of it.
-SceneQuestion wholeScene(const bench::Case& c) {
-  SceneQuestion question = c;
-  copyFields(QuestionEffect::view, question, SceneQuestion());
-  return question;
-}
-
 bool filesAreThere(const bench::Case& c, Lines& lines) {
   return lines.find("", [&] {
     findScene(c.scene);
@@ -56,14 +47,15 @@ bool filesAreThere(const bench::Case& c, Lines& lines) {
   });
 }
 
-/// Cameras and lights of all cases that see one scene.
+/// Cameras, lights and their sizes of all cases that see one scene.
 void checkViews(const std::vector<const bench::Case*>& cases, Lines& lines, const Warn& warn) {
   const std::string where = cases.front()->scene + ": ";
+  SceneQuestion shown = openedScene(*cases.front());
   View view;
   bool opened = false;
   lines.find(where, [&] {
     try {
-      view = open(wholeScene(*cases.front()), warn);
+      view = open(shown, warn);
       opened = true;
     } catch (const UsageError&) {
       throw;
@@ -73,6 +65,8 @@ void checkViews(const std::vector<const bench::Case*>& cases, Lines& lines, cons
   });
   if (!opened) return;
   for (const bench::Case* c : cases) {
+    if (std::exchange(shown.lightSize, c->lightSize) != c->lightSize)
+      lines.find(where, [&] { relight(view, shown); });
     lines.find(where, [&] { chooseCamera(*c, view.pose, view.framing); });
     if (!c->light.empty()) lines.find(where, [&] { findNamed("light", c->light, view.pose.lightNames); });
   }
@@ -90,10 +84,10 @@ std::vector<std::string> missingThings(const std::vector<bench::Case>& cases,
     if (c.technique != bench::kSeparationFloor)
       lines.find("", [&] { checkMeasurable(techniqueChoice(c).resolve(registry)); });
     if (!filesAreThere(c, lines)) continue;
-    const auto place = std::ranges::find(known, wholeScene(c));
+    const auto place = std::ranges::find(known, openedScene(c));
     const auto index = static_cast<std::size_t>(place - known.begin());
     if (place == known.end()) {
-      known.push_back(wholeScene(c));
+      known.push_back(openedScene(c));
       scenes.emplace_back();
     }
     scenes[index].push_back(&c);

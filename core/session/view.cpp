@@ -9,6 +9,7 @@
 
 #include "core/base/error.h"
 #include "core/base/text.h"
+#include "core/question/question_fields.h"
 #include "core/scene/camera.h"
 #include "core/scene/default_lights.h"
 #include "core/scene/displaced.h"
@@ -266,13 +267,24 @@ static void frame(const SceneQuestion& question, View& view) {
   if (question.floor == "on") scene::addFloor(view.scene, scene::vertexBounds(view.scene, start));
 }
 
-View open(const SceneQuestion& question, const Warn& warn) {
-  View view;
+/// What needs nothing of the scene.
+static void setPicture(const SceneQuestion& question, View& view) {
   view.size = {question.width, question.height};
   view.aa = question.aa;
   view.unshadowed = question.unshadowed == "on";
   view.reliefPaths = reliefPathsOf(question.reliefPaths);
   view.subsurface = subsurfaceModelOf(question.subsurface);
+}
+
+/// --light.
+static void chooseLight(const SceneQuestion& question, View& view) {
+  view.light =
+      question.light.empty() ? scene::kNone : findNamed("light", question.light, view.pose.lightNames);
+}
+
+View open(const SceneQuestion& question, const Warn& warn) {
+  View view;
+  setPicture(question, view);
   view.scene = scene::load(findScene(question.scene));
   if (question.displaced == "on") view.scene = scene::displaced(std::move(view.scene));
   addEnvironment(question, view.scene);
@@ -302,8 +314,27 @@ View open(const SceneQuestion& question, const Warn& warn) {
     view.scene.environment = scene::loadEnvironment(findDefaultEnvironment(), view.scene.warnings);
   relight(view, question);
   warnOfOpaqueMedium(view, warn);
-  if (!question.light.empty()) view.light = findNamed("light", question.light, view.pose.lightNames);
+  chooseLight(question, view);
   return view;
+}
+
+SceneQuestion openedScene(const SceneQuestion& question) {
+  const SceneQuestion standard;
+  SceneQuestion scene = question;
+  copyFields(QuestionEffect::view, scene, standard);
+  scene.lightSize = standard.lightSize;
+  return scene;
+}
+
+bool show(View& view, const SceneQuestion& shown, const SceneQuestion& asked) {
+  setPicture(asked, view);
+  const bool relit = view.defaultLights || asked.lightSize != shown.lightSize;
+  if (relit)
+    relight(view, asked);
+  else
+    view.camera = chooseCamera(asked, view.pose, view.framing);
+  chooseLight(asked, view);
+  return relit;
 }
 
 reference::Request referenceRequest(const View& view, const scene::Pose& pose,

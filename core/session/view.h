@@ -68,6 +68,18 @@ LIMN_API bool movingRelights(const View& view, const SceneQuestion& question, do
 /// Sets the size of every light that has an extent (--light-size). Throws UsageError when there is none.
 LIMN_API void resizeLights(scene::Scene& scene, double size);
 
+/// Returns the question with the defaults in the fields that show() sets in an open scene. Of those that need
+/// no other scene the time and --set-light are not among them: what a renderer keeps of geometry that moved
+/// (room, hierarchies of triangles) may differ from what it makes of a scene that is opened. Nor are
+/// --environment-rotation and --environment-scale, of which renderers keep what they have made.
+LIMN_API SceneQuestion openedScene(const SceneQuestion& question);
+
+/// Gives a view that shows one question the camera, size, choice of light and sizes of lights of another of
+/// the same openedScene(), so that all is as open() makes it, to the bit. Returns whether lights may have
+/// changed: renderers then have to be told (render::Renderer::setTime()). Throws UsageError as open() does;
+/// lights may then be set in part.
+LIMN_API bool show(View& view, const SceneQuestion& shown, const SceneQuestion& asked);
+
 /// Returns the reference's request for the same picture: the view's scene, size and light. The caller sets
 /// samples, and bounces and interfaces where they are not the term's defaults. `view` and `pose` must outlive
 /// the request.

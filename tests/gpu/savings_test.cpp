@@ -60,6 +60,8 @@ TEST_F(SavingsTest, FindWhatASceneDoesNotNeed) {
   EXPECT_THAT(dark.passes, testing::ElementsAre("core: light dark"));
   EXPECT_GT(dark.forced.memoryBytes, dark.without.memoryBytes);
   EXPECT_THAT(named(results, "environment light").passes, testing::ElementsAre("core: environment light"));
+  EXPECT_EQ(named(results, "environment light").without.memoryBytes, dark.without.memoryBytes)
+      << "the maps of an environment that is not there";
   EXPECT_THAT(named(results, "unchanged results").passes, testing::Contains("shadow: shadow maps"));
   EXPECT_EQ(dark.forced.ms.size(), 3u);
 

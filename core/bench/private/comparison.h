@@ -63,11 +63,11 @@ LIMN_API std::string ratioText(const Ratio& ratio, int digits = 2);
 /// Returns ratioText() with the interval; of fewer than kFewestTurns "2.10 (n = 1)".
 LIMN_API std::string measuredText(const Ratio& ratio);
 
-/// Returns the quickest timed row of the technique whose boundedError() is not above `limit` (in the
-/// penumbra, where that is known); null if there is none. An outdated row is taken only where the newest
-/// version measured none.
+/// Returns the quickest timed row of the technique whose boundedError() is not above that of `against`, both
+/// of the same pixels: of the penumbra where that is known of `against`, else of the whole picture. Null if
+/// there is none. An outdated row is taken only where the newest version measured none.
 LIMN_API const Row* quickest(const Table& table, const std::string& technique, const MetricInfo& error,
-                             std::optional<double> limit);
+                             const Row& against);
 
 /// Holds how long the reference's own method takes to reach the row's error, with as many cores.
 struct ReferenceTime {

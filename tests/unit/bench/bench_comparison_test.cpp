@@ -71,6 +71,25 @@ TEST(BenchComparison, RowsAreComparedWithTheBaseline) {
       << text;
 }
 
+/// Of a row without a pixel in the penumbra only the error of the whole picture is known, where lit pixels
+/// hide it.
+TEST(BenchComparison, ErrorsOfPenumbraeStandBesideNoneOfWholePictures) {
+  std::vector<Row> rows = {exampleRow(exampleCase("pcss", 1024), 0.1, 8),
+                           exampleRow(exampleCase("pcss", 16), 0.01, 2),
+                           exampleRow(exampleCase("vssm"), 0.16, 1)};
+  rows[0].what.baseline = true;
+  rows[1].penumbra.reset();
+  EXPECT_NE(comparisonMarkdown({"", "", rows})
+                .find("| vssm samples=16 | 8.00 (n = 1) | 8.00 | pcss samples=1024 |"),
+            std::string::npos)
+      << comparisonMarkdown({"", "", rows});
+  rows[2].penumbra.reset();
+  EXPECT_NE(
+      comparisonMarkdown({"", "", rows}).find("| vssm samples=16 | 8.00 (n = 1) | 8.00 | pcss samples=16 |"),
+      std::string::npos)
+      << comparisonMarkdown({"", "", rows});
+}
+
 /// The quickest row of an earlier version stands in for one that the newest measured only where there is
 /// none.
 TEST(BenchComparison, ComparisonsMarkRowsOfAnotherProgram) {

@@ -134,6 +134,30 @@ TEST_F(BenchRunner, FurtherTurnsLengthenTheRowsAndResume) {
   EXPECT_EQ(rowFromJson(toJson(results.rows()[0])).cost.frameMs.turns, 3);
 }
 
+/// So that a scene is opened once in a turn, though suites come back to it.
+TEST_F(BenchRunner, FurtherTurnsGoByScene) {
+  std::vector<Case> cases(4, exampleCase("pcss", 16));
+  cases[0].scene = cases[2].scene = "balls";
+  cases[1].scene = cases[3].scene = "statue";
+  cases[2].lightSize = 0.3;
+  cases[3].lightSize = 0.6;
+  for (Case& c : cases) c.turns = 2;
+  Fakes fakes;
+  Callbacks callbacks = fakes.callbacks();
+  std::vector<int> first, second, places;
+  callbacks.progress = [&](const Progress& progress) {
+    if (progress.state != Progress::State::started) return;
+    (progress.turn == 1 ? first : second).push_back(progress.index);
+    places.push_back(progress.place);
+  };
+  ResultsFile results(path_);
+  ASSERT_EQ(runCases(cases, "llvmpipe", results, callbacks).done, 4);
+  EXPECT_EQ(first, (std::vector{0, 1, 2, 3}));
+  EXPECT_EQ(second, (std::vector{0, 2, 1, 3}));
+  EXPECT_EQ(places, (std::vector{0, 1, 2, 3, 0, 1, 2, 3}));
+  EXPECT_EQ(results.rows()[1].what.scene, "statue") << "the file keeps its order";
+}
+
 TEST_F(BenchRunner, BoundsAreTimedInEveryTurnOfTheRowsThatAskForThem) {
   std::vector<Case> cases = {exampleCase("pcss", 16), exampleCase("pcss", 64), exampleCase("airlight")};
   for (Case& c : cases) c.turns = 3;

@@ -13,9 +13,11 @@ using testing::IsEmpty;
 class SuiteCheckTest : public testing::Test {
  protected:
   SuiteCheckTest() { case_.scene = "gem"; }
+  std::vector<std::string> missing(const std::vector<bench::Case>& cases) {
+    return missingThings(cases, registry_, [this] { ++signsOfLife_; });
+  }
   std::vector<std::string> missing(int copies = 1) {
-    return missingThings(std::vector<bench::Case>(static_cast<size_t>(copies), case_), registry_,
-                         [this] { ++signsOfLife_; });
+    return missing(std::vector<bench::Case>(static_cast<size_t>(copies), case_));
   }
   TechniqueRegistry registry_{{}};
   bench::Case case_;
@@ -32,6 +34,21 @@ TEST_F(SuiteCheckTest, EachThingIsSaidOnce) {
   case_.camera = "no_such_camera";
   EXPECT_THAT(missing(3), ElementsAre(HasSubstr("no_such_camera"), HasSubstr("no_such_light")));
   EXPECT_EQ(signsOfLife_, 1) << "of one scene";
+}
+
+/// Sizes of lights are set in the scene that is open.
+TEST_F(SuiteCheckTest, AScenesLightsAreResizedWithoutOpeningItAgain) {
+  std::vector<bench::Case> cases;
+  for (const double size : {0.0, 0.3, 0.6}) {
+    case_.lightSize = size;
+    cases.push_back(case_);
+  }
+  for (bench::Case& c : cases) c.scene = "lights";
+  EXPECT_THAT(missing(cases), IsEmpty());
+  EXPECT_EQ(signsOfLife_, 1);
+  for (bench::Case& c : cases) c.scene = "cornell_box";
+  EXPECT_THAT(missing(cases), ElementsAre(HasSubstr("--light-size 0.3"), HasSubstr("--light-size 0.6")));
+  EXPECT_EQ(signsOfLife_, 2);
 }
 
 /// Scenes may have an environment of their own, which only opening them tells.

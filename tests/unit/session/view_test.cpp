@@ -13,6 +13,7 @@
 
 #include "core/base/error.h"
 #include "core/base/file.h"
+#include "core/base/same_bytes.h"
 #include "core/question/question_fields.h"
 #include "core/scene_io/load.h"
 #include "core/session/find.h"
@@ -114,6 +115,68 @@ TEST(SceneQuestion, FieldsNeedNoMoreThanTheirEffect) {
               referenceHash(with))
         << field.key;
   }
+}
+
+/// An open view, to the bit, against what opening gives.
+void expectShown(const View& view, const SceneQuestion& question, const std::string& what) {
+  const View opened = open(question);
+  const Term term = parseTerm(question.term);
+  EXPECT_EQ(reference::contentHash(referenceRequest(view, view.pose, view.camera, term)),
+            reference::contentHash(referenceRequest(opened, opened.pose, opened.camera, term)))
+      << what;
+  EXPECT_TRUE(sameBytes(view.pose.lights, opened.pose.lights)) << what;
+  EXPECT_EQ(view.pose.lightNames, opened.pose.lightNames) << what;
+  EXPECT_EQ(view.pose.instances, opened.pose.instances) << what;
+  EXPECT_EQ(view.camera.worldToView, opened.camera.worldToView) << what;
+  EXPECT_EQ(view.camera.yfov, opened.camera.yfov) << what;
+  EXPECT_EQ(view.size, opened.size) << what;
+  EXPECT_EQ(view.aa, opened.aa) << what;
+  EXPECT_EQ(view.light, opened.light) << what;
+}
+
+/// What a bench changes in the scene that it has open; for everything else it opens it again.
+TEST(OpenScene, ShowsOtherQuestionsAsOpeningDoes) {
+  for (const QuestionField& field : questionFields()) {
+    const auto [without, with] = exampleOf(field);
+    const bool shown = field.effect == QuestionEffect::view || field.key == std::string_view("light_size");
+    EXPECT_EQ(openedScene(without) == openedScene(with), shown) << field.key;
+    if (!shown) continue;
+    View view = open(without);
+    show(view, without, with);
+    expectShown(view, with, field.key);
+    show(view, with, without);
+    expectShown(view, without, std::string(field.key) + " taken back");
+  }
+}
+
+/// With lights that follow the camera and lights that were edited, after any other size.
+TEST(OpenScene, LightsHaveTheirSizeWhateverWasShownBefore) {
+  SceneQuestion question;
+  question.scene = "lights";
+  for (const char* defaultLights : {"off", "on"}) {
+    question.defaultLights = defaultLights;
+    question.lightSettings = {"key.intensity=77", "key.position=1,2,3"};
+    question.lightSize = 0;
+    SceneQuestion before = question;
+    View view = open(question);
+    for (const double size : {0.3, 2.0, 0.0, 0.3}) {
+      question.lightSize = size;
+      EXPECT_TRUE(show(view, before, question));
+      expectShown(view, question, std::string(defaultLights) + " " + std::to_string(size));
+      before = question;
+    }
+  }
+}
+
+/// What is refused is refused as where the scene is opened.
+TEST(OpenScene, RefusesWhatOpeningRefuses) {
+  SceneQuestion question;
+  question.scene = "cornell_box";  // its lamp is a mesh
+  const SceneQuestion before = question;
+  View view = open(question);
+  question.lightSize = 0.3;
+  EXPECT_THROW(open(question), UsageError);
+  EXPECT_THROW(show(view, before, question), UsageError);
 }
 
 /// A triangle that nothing lights.
