@@ -5,6 +5,7 @@
 #include <limits>
 
 #include "core/reference/private/light_view.h"
+#include "core/reference/private/medium_view.h"
 #include "core/scene/light_texture.h"
 #include "glsl/media/airlight.glsl"
 #include "glsl/numeric/geometry.glsl"
@@ -65,13 +66,10 @@ Distance distanceBetween(float from, float to, float rate, float u) {
 
 Airlight::Airlight(const RayScene& rays, const Request& request) : rays_(rays) {
   if (rays.medium().medium().scattering == glm::vec3(0)) return;
-  lights_ = mediumLights(request);
-  const int count = static_cast<int>(request.pose.lights.size());
-  if (request.light >= ownLights(request.pose) && request.light < count)
-    lights_.push_back(request.pose.lights[static_cast<size_t>(request.light)]);
-  if (!request.scene.environment || (request.light != kAllLights && request.light != count)) return;
-  environment_.emplace(request.scene.environment);
-  if (!environment_->present()) environment_.reset();
+  const AskedLights asked = askedLights(request);
+  const auto begin = request.pose.lights.begin();
+  lights_.assign(begin + asked.first, begin + asked.last);
+  if (asked.environment && rays.environment().present()) environment_ = &rays.environment();
 }
 
 glm::dvec3 Airlight::sample(const glm::vec3& eye, const glm::vec3& direction, float end,

@@ -2,7 +2,6 @@
 
 #include <glm/glm.hpp>
 
-#include "core/reference/private/light_view.h"
 #include "core/scene/light_texture.h"
 
 namespace limn::reference {
@@ -20,9 +19,9 @@ struct Estimate {
 
   void addPunctual(const PointView& view) const {
     if (!view.above()) return;
-    const glm::vec3 value =
-        surface.reflectance(view.arrival().direction) * view.irradiance() * through(view.arrival());
-    if (value != glm::vec3(0) && arrives(view.arrival())) add(value, samples.count);
+    const Arrival& arrival = view.arrival();
+    const glm::vec3 value = surface.reflectance(arrival.direction) * view.irradiance();
+    if (value != glm::vec3(0) && arrives(arrival)) add(value * through(arrival), samples.count);
   }
 
   /// What a smooth coat mirrors of the light from far away.
@@ -30,8 +29,8 @@ struct Estimate {
     const glm::vec3 share = surface.mirrored();
     if (share == glm::vec3(0)) return;
     const Arrival arrival = view.towards(surface.mirrorDirection());
-    const glm::vec3 value = share * arrival.radiance * through(arrival);
-    if (value != glm::vec3(0) && arrives(arrival)) add(value, samples.count);
+    const glm::vec3 value = share * arrival.radiance;
+    if (value != glm::vec3(0) && arrives(arrival)) add(value * through(arrival), samples.count);
   }
 
   /// A light of which the surface may not see anything.
@@ -51,7 +50,7 @@ struct Estimate {
   }
 
  private:
-  /// What the light's texture and the medium leave of it.
+  /// What the light's texture and the medium leave of what arrives. In smoke this takes longer than a ray.
   glm::vec3 through(const Arrival& arrival) const {
     return tint * (arrival.finite ? medium.transmittanceBetween(surface.position, arrival.target)
                                   : medium.transmittanceToInfinity(surface.position, arrival.direction));
@@ -70,10 +69,10 @@ struct Estimate {
   void addLightSample(const View& view, glm::vec2 u) const {
     const Arrival arrival = view.sample(u);
     if (!(arrival.pdf > 0.f)) return;
-    const glm::vec3 value = surface.reflectance(arrival.direction) * arrival.radiance * through(arrival);
+    const glm::vec3 value = surface.reflectance(arrival.direction) * arrival.radiance;
     if (value == glm::vec3(0) || !arrives(arrival)) return;
     const float brdfPdf = surface.pdf(arrival.direction);
-    add(value * (powerHeuristic(arrival.pdf, brdfPdf) / arrival.pdf), 1);
+    add(value * through(arrival) * (powerHeuristic(arrival.pdf, brdfPdf) / arrival.pdf), 1);
   }
 
   template <class View>
@@ -83,31 +82,37 @@ struct Estimate {
     if (!(pdf > 0.f)) return;
     const Arrival arrival = view.towards(direction);
     if (!(arrival.pdf > 0.f)) return;
-    const glm::vec3 value = surface.reflectance(direction) * arrival.radiance * through(arrival);
-    if (value != glm::vec3(0) && arrives(arrival)) add(value * (powerHeuristic(pdf, arrival.pdf) / pdf), 1);
+    const glm::vec3 value = surface.reflectance(direction) * arrival.radiance;
+    if (value != glm::vec3(0) && arrives(arrival))
+      add(value * through(arrival) * (powerHeuristic(pdf, arrival.pdf) / pdf), 1);
   }
 };
 
 }  // namespace
 
+double raysOfSample(const Request& request) {
+  // Factors of a light take one ray a sample, however many lights there are.
+  const int lights = isLightFactor(request.term) ? 0 : askedLights(request).count();
+  return (1.0 + lights) * (1.0 + request.bounces);
+}
+
 DirectLight::DirectLight(const RayScene& rays, const Request& request)
-    : rays_(rays), lights_(request.pose.lights), environment_(request.scene.environment) {
-  const int count = static_cast<int>(lights_.size());
-  first_ = request.light == kAllLights ? 0 : std::min(request.light, count);
-  last_ = request.light == kAllLights ? ownLights(request.pose) : std::min(request.light + 1, count);
-  withEnvironment_ = request.light == kAllLights || request.light == count;
+    : rays_(rays), lights_(request.pose.lights), asked_(askedLights(request)) {
+  if (asked_.environment && rays.environment().present()) environment_ = &rays.environment();
 }
 
 void DirectLight::add(const Surface& surface, const SampleRange& samples, Sums& sums) const {
-  for (int i = first_; i < last_; ++i) {
+  for (int i = asked_.first; i < asked_.last; ++i) {
     const glsl::Light& light = lights_[static_cast<size_t>(i)];
+    const glm::vec3 tint = scene::lightTextureAt(rays_.scene(), light, surface.position);
+    if (tint == glm::vec3(0)) continue;
     const Estimate estimate{.rays = rays_,
                             .surface = surface,
                             .samples = samples,
                             .pair = samples.pair + 3u * static_cast<uint32_t>(i),
                             .sums = sums,
                             .medium = rays_.medium(),
-                            .tint = scene::lightTextureAt(rays_.scene(), light, surface.position)};
+                            .tint = tint};
     if (isPunctual(light))
       estimate.addPunctual(PointView(light, surface));
     else if (light.type == glsl::light_rectangle || glsl::light_is_distant_rectangle(light))
@@ -115,10 +120,10 @@ void DirectLight::add(const Surface& surface, const SampleRange& samples, Sums& 
     else
       estimate.addExtended(ConeView(light, surface));
   }
-  const EnvironmentView environment(environment_);
-  if (!withEnvironment_ || environment.dark()) return;
-  const Estimate estimate{rays_, surface,       samples, samples.pair + 3u * static_cast<uint32_t>(last_),
-                          sums,  rays_.medium()};
+  if (!environment_) return;
+  const EnvironmentView environment(*environment_);
+  const Estimate estimate{
+      rays_, surface, samples, samples.pair + 3u * static_cast<uint32_t>(asked_.last), sums, rays_.medium()};
   estimate.addSamples(environment);
   estimate.addMirrored(environment);
 }

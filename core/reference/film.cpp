@@ -137,7 +137,6 @@ std::optional<double> noiseOf(const Integrator& integrator, const Request& reque
 
 void develop(const Integrator& integrator, const View& view, const Request& request,
              const Accumulators& state, Image& image) {
-  const scene::EnvironmentLight environment(request.scene.environment);
   tbb::parallel_for(size_t{0}, view.pixelCount(), [&](size_t pixel) {
     const std::span<float> out = imagePixel(view, image, pixel);
     if (isLightFactor(request.term)) {
@@ -151,6 +150,7 @@ void develop(const Integrator& integrator, const View& view, const Request& requ
     }
     Mean mean = meanOf(integrator, state, pixel);
     if (request.term == Term::final) {
+      const scene::EnvironmentLight& environment = view.rays.environment();
       Surface surface;
       glm::vec3 seen;
       if (!view.surface(pixel, surface))

@@ -49,6 +49,14 @@ Aim aimAt(const glsl::Light& light, const glm::vec3& centre, float radius, float
           2 * glsl::pi * cap};
 }
 
+/// The lights that are asked for, without those that stand for the environment.
+std::vector<glsl::Light> ownAmong(const Request& request) {
+  const AskedLights asked = askedLights(request);
+  const int last = std::min(asked.last, ownLights(request.pose));
+  const auto begin = request.pose.lights.begin();
+  return {begin + std::min(asked.first, last), begin + last};
+}
+
 float largest(const glm::vec3& v) {
   return std::max({v.x, v.y, v.z});
 }
@@ -73,7 +81,7 @@ LightTracer::LightTracer(const View& view, const Request& request)
       worldToView_(view.frame.world_to_view),
       spacing_(glm::length(glm::dvec3(glm::vec3(view.frame.view_ray_dx))),
                glm::length(glm::dvec3(glm::vec3(view.frame.view_ray_dy)))),
-      lights_(mediumLights(request)),
+      lights_(ownAmong(request)),
       medium_(view.rays.medium().medium()),
       media_(request.term != Term::caustic && medium_.scattering != glm::vec3(0)),
       surfaces_(request.term != Term::media) {

@@ -16,6 +16,12 @@ float lightOffset(const glsl::Light& light) {
 
 }  // namespace
 
+AskedLights askedLights(const Request& request) {
+  const int count = static_cast<int>(request.pose.lights.size());
+  if (request.light == kAllLights) return {0, ownLights(request.pose), true};
+  return {std::min(request.light, count), std::min(request.light + 1, count), request.light == count};
+}
+
 bool isPunctual(const glsl::Light& light) {
   return light.type == glsl::light_point || light.type == glsl::light_spot ||
          (light.type == glsl::light_directional && !(light.angular_diameter > 0.f) &&

@@ -307,6 +307,8 @@ RayScene::RayScene(const scene::Scene& scene, const scene::Pose& pose, bool unsh
     draw.tangentToWorld = glm::mat3(matrix);
     draw.normalToWorld = scene::normalMatrix(matrix);
     draw.orientation = scene::mirrored(instance) ? -1.f : 1.f;
+    // A source may have no triangles for a while, and Embree makes no buffer without a size.
+    if (primitive.indices.empty()) continue;
 
     const std::pair<int, int> key{instance.mesh, instance.primitive};
     if (!dynamic && instance.deformed == scene::kNone && uses[key] > 1 && takesRays(matrix)) {
@@ -341,6 +343,11 @@ RayScene::RayScene(const scene::Scene& scene, const scene::Pose& pose, bool unsh
 }
 
 RayScene::~RayScene() = default;
+
+const scene::EnvironmentLight& RayScene::environment() const {
+  std::call_once(environmentAsked_, [&] { environment_.emplace(scene_.environment); });
+  return *environment_;
+}
 
 namespace {
 
@@ -393,10 +400,9 @@ bool RayScene::nearest(const glm::vec3& origin, const glm::vec3& direction, Hit&
 }
 
 bool RayScene::nearestOfBody(uint32_t draw, const glm::vec3& origin, const glm::vec3& direction, float from,
-                             Hit& hit) const {
+                             float to, Hit& hit) const {
   Context context(this);
-  if (!intersect(hierarchy_->bodies.at(draw), context,
-                 rayFrom(origin, direction, from, std::numeric_limits<float>::infinity()), hit))
+  if (!intersect(hierarchy_->bodies.at(draw), context, rayFrom(origin, direction, from, to), hit))
     return false;
   hit.draw = draw;
   return true;

@@ -12,6 +12,7 @@
 #include "core/base/text.h"
 #include "core/reference/private/airlight.h"
 #include "core/reference/private/content_hash.h"
+#include "core/reference/private/direct_light.h"
 #include "core/reference/private/film.h"
 #include "core/reference/private/light_tracer.h"
 #include "core/reference/private/validate.h"
@@ -80,6 +81,12 @@ void validate(const Request& r) {
   if (r.width < 1 || r.height < 1 || r.width > kMaxImageSide / r.aa || r.height > kMaxImageSide / r.aa)
     throw UsageError(fmt::format("reference: size {}x{} with aa {} is not in 1 .. {} per side", r.width,
                                  r.height, r.aa, kMaxImageSide));
+  // Before rays are traced: all samples of the pixels lie side by side.
+  const int64_t values =
+      int64_t{r.width} * r.height * r.aa * r.aa * static_cast<int64_t>(channelNames(r.term).size());
+  if (values > kMaxImageValues)
+    throw UsageError(fmt::format("reference: size {}x{} with aa {} has {} values; at most {} are accepted",
+                                 r.width, r.height, r.aa, values, kMaxImageValues));
   if (!(r.noise >= 0 && r.noise <= 1))
     throw UsageError(fmt::format("reference: noise {} is not in 0 .. 1 (0: take spp samples)", r.noise));
   if (!contains(kPicturedTerms, r.term))
@@ -161,7 +168,7 @@ class Work {
     found.sums.resize(state_.sums.size());
     if (!loadCheckpoint(request_.checkpoint, hash_, found) || found.samples > needed_) return;
     state_ = std::move(found);
-    noise_ = noise().value_or(0);
+    noise_ = noise();
   }
 
   /// A disk that is full ends no work that may still succeed: only the last save, of stopped work, must.
@@ -173,15 +180,14 @@ class Work {
     }
   }
 
-  /// Samples per half of the next pass: as many as there are, between limits, so that the counts 8, 16, 32,
-  /// ... at which noise is tested all occur. A power of two that depends on the request and on what is done
-  /// alone. Factors of a light take one ray a sample, however many lights there are.
+  /// Samples per half of the next pass: at most as many as take the work to the next of the counts 8, 16, 32,
+  /// ... at which noise is tested, also where a checkpoint is between two of them. They depend on what the
+  /// work's hash holds and on what is done alone.
   uint32_t passSize() const {
-    const size_t lights = isLightFactor(request_.term) ? 0 : request_.pose.lights.size();
-    const double work =
-        static_cast<double>(view_.pixelCount()) * static_cast<double>(1 + lights) * (1.0 + request_.bounces);
+    const double work = static_cast<double>(view_.pixelCount()) * raysOfSample(request_);
     const double wanted = std::clamp(0x1p21 / work, 1.0, 64.0);
-    return std::min(std::bit_floor(static_cast<uint32_t>(wanted)), std::max(state_.samples, 8u));
+    const uint32_t next = std::bit_ceil(std::max(state_.samples + 1, 8u));
+    return std::min(std::bit_floor(static_cast<uint32_t>(wanted)), next - state_.samples);
   }
 
   void pass(uint32_t count) {
@@ -196,7 +202,7 @@ class Work {
     if (tracer_) tracer_->trace(state_.samples, count, state_.sums);
     checkStop();
     state_.samples += count;
-    if (std::has_single_bit(state_.samples) || state_.samples == needed_) noise_ = noise().value_or(0);
+    if (std::has_single_bit(state_.samples) || state_.samples == needed_) noise_ = noise();
   }
 
   void checkStop() const {
@@ -236,7 +242,7 @@ class Work {
   bool finished() const {
     if (state_.samples >= needed_) return true;
     if (!(request_.noise > 0) || state_.samples < 8 || !std::has_single_bit(state_.samples)) return false;
-    if (const std::optional<double> reached = noise()) return *reached <= request_.noise;
+    if (noise_) return *noise_ <= request_.noise;
     const bool traces = tracer_ || airlight_ || reflects();
     return !traces || 2 * state_.samples >= kFewestBlack;
   }
@@ -248,19 +254,20 @@ class Work {
 
   Progress progress(double secondsPerSample) const {
     double wanted = needed_;
-    if (request_.noise > 0 && noise_ > 0) {
-      const double ratio = noise_ / request_.noise;
+    const double reached = noise_.value_or(0);
+    if (request_.noise > 0 && reached > 0) {
+      const double ratio = reached / request_.noise;
       wanted = std::clamp(state_.samples * ratio * ratio, static_cast<double>(state_.samples), wanted);
     }
     return {.fraction = state_.samples / wanted,
-            .noise = noise_,
+            .noise = reached,
             .secondsLeft = secondsPerSample * (wanted - state_.samples),
             .spp = static_cast<int>(2 * state_.samples)};
   }
 
   Result finish() {
     Result result;
-    result.noiseRms = noise().value_or(0);
+    result.noiseRms = noise_.value_or(0);
     result.spp = static_cast<int>(2 * state_.samples);
     develop(*integrator_, view_, request_, state_, image_);
     auto& metadata = image_.metadata();
@@ -289,7 +296,7 @@ class Work {
   std::optional<LightTracer> tracer_;
   Accumulators state_;
   std::string hash_;
-  double noise_ = 0;
+  std::optional<double> noise_;  ///< at the last count of samples at which it was asked for
 };
 
 }  // namespace

@@ -35,8 +35,7 @@ struct First {
 
 }  // namespace
 
-SpecularPaths::SpecularPaths(const RayScene& rays, int interfaces)
-    : rays_(rays), environment_(rays.scene().environment), interfaces_(interfaces) {}
+SpecularPaths::SpecularPaths(const RayScene& rays, int interfaces) : rays_(rays), interfaces_(interfaces) {}
 
 bool SpecularPaths::many() const {
   return interfaces_ == kAllInterfaces;
@@ -45,7 +44,7 @@ bool SpecularPaths::many() const {
 SpecularEnd SpecularPaths::backgroundAlong(const Ray& ray, const glm::vec3& from) const {
   const glm::vec3 passes = rays_.medium().transmittanceToInfinity(from, ray.direction);
   return {ray.throughput * ray.atCamera * doubles(passes), std::nullopt,
-          environment_.radiance(ray.direction)};
+          rays_.environment().radiance(ray.direction)};
 }
 
 /// At a surface that is not specular; `from`: where the medium begins, unless the way lies within a body.

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <limits>
 
 #include "core/reference/private/subsurface_walk.h"
 #include "glsl/diffusion/dipole.glsl"
@@ -148,7 +149,9 @@ glm::dvec3 SubsurfaceLight::probedLight(const Surface& surface, const Sampler& s
   float from = 0;
   for (uint32_t i = 1; i <= kMostPlaces; ++i) {
     Hit hit;
-    if (!rays_.nearestOfBody(surface.draw, glm::vec3(start), glm::vec3(along), from, hit)) break;
+    if (!rays_.nearestOfBody(surface.draw, glm::vec3(start), glm::vec3(along), from,
+                             std::numeric_limits<float>::infinity(), hit))
+      break;
     from = hit.depth + std::max(surface.rayOffset, 0x1p-20f * hit.depth);
     const Surface place = frontAt(rays_, hit);
     const glm::dvec3 way = glm::dvec3(place.position) - x;

@@ -58,7 +58,10 @@ struct Body {
 
   bool meets(const glm::dvec3& direction, double flight) {
     const glm::vec3 along(direction);
-    if (!rays.nearestOfBody(draw, position, along, 0.f, hit)) return false;
+    // Most flights end far from the boundary: a ray that ends there, too, leaves out most of the mesh.
+    // Rounding must not end it earlier.
+    const float reach = static_cast<float>(flight) * (1 + 0x1p-20f);
+    if (!rays.nearestOfBody(draw, position, along, 0.f, reach, hit)) return false;
     if (static_cast<double>(hit.depth) > flight) return false;
     met = interfaceAt(rays, hit, along);
     return true;

@@ -6,7 +6,6 @@
 
 #include <algorithm>
 #include <chrono>
-#include <limits>
 #include <string>
 #include <utility>
 
@@ -14,13 +13,14 @@
 #include "core/base/text.h"
 #include "core/question/term.h"
 #include "core/radiosity/scene_elements.h"
-#include "core/reference/private/integrator.h"
+#include "core/reference/private/direct_light.h"
 #include "core/reference/private/validate.h"
 
 namespace limn::reference {
 namespace {
 
 constexpr int kRowLength = 1024;
+constexpr uint32_t kMostPoints = kRowLength * kMaxImageSide;
 constexpr TermSet kVertexTerms = Term::final | Term::direct | Term::indirect;
 
 Surface whiteSurface(const SurfacePoint& point, float clearance) {
@@ -38,8 +38,7 @@ Surface whiteSurface(const SurfacePoint& point, float clearance) {
 
 /// A part of a second's work, so that progress is seen, and enough of it to keep all cores busy.
 uint32_t samplesPerPass(const Request& request, size_t points) {
-  const double work = static_cast<double>(points) * static_cast<double>(1 + request.pose.lights.size()) *
-                      (1.0 + request.bounces);
+  const double work = static_cast<double>(points) * raysOfSample(request);
   return static_cast<uint32_t>(std::clamp(0x1p21 / std::max(work, 1.0), 1.0, 1024.0));
 }
 
@@ -81,7 +80,7 @@ std::vector<glm::vec3> irradianceAt(const Request& request, std::span<const Surf
 
 std::vector<SurfacePoint> vertexPoints(const scene::Scene& scene, const scene::Pose& pose,
                                        float longestEdge) {
-  const radiosity::SceneElements elements(scene, pose, longestEdge, std::numeric_limits<uint32_t>::max());
+  const radiosity::SceneElements elements(scene, pose, longestEdge, kMostPoints);
   std::vector<SurfacePoint> points;
   for (const uint32_t leaf : elements.forest().leafOf())
     points.push_back(

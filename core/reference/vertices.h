@@ -25,7 +25,8 @@ LIMN_API std::vector<glm::vec3> irradianceAt(const Request& request, std::span<c
                                              float clearance);
 
 /// Returns the points of surfaces at which methods that light vertices see them: the surface elements of
-/// radiosity::SceneElements with edges no longer than `longestEdge` scene radii.
+/// radiosity::SceneElements with edges no longer than `longestEdge` scene radii. Throws UsageError where they
+/// are more than vertexImage() has rows for.
 LIMN_API std::vector<SurfacePoint> vertexPoints(const scene::Scene& scene, const scene::Pose& pose,
                                                 float longestEdge);
 

@@ -2,12 +2,11 @@
 // shadows included.
 #pragma once
 
-#include <optional>
 #include <vector>
 
-#include "core/reference/private/medium_view.h"
 #include "core/reference/private/ray_scene.h"
 #include "core/reference/private/sampler.h"
+#include "core/reference/reference.h"
 #include "core/scene/environment_light.h"
 
 namespace limn::reference {
@@ -36,8 +35,8 @@ class Airlight {
   glm::dvec3 ofEnvironment(const Piece& piece, const Sampler& sampler, uint32_t pair) const;
 
   const RayScene& rays_;
-  std::vector<glsl::Light> lights_;                     ///< none where nothing scatters
-  std::optional<scene::EnvironmentLight> environment_;  ///< likewise
+  std::vector<glsl::Light> lights_;                       ///< none where nothing scatters
+  const scene::EnvironmentLight* environment_ = nullptr;  ///< null likewise, not asked for, or dark
 };
 
 }  // namespace limn::reference

@@ -7,7 +7,6 @@
 
 #include "core/reference/private/checkpoint.h"
 #include "core/reference/private/integrator.h"
-#include "core/scene/environment_light.h"
 
 namespace limn::reference {
 

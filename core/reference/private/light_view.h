@@ -5,11 +5,21 @@
 
 #include "core/reference/private/ray_scene.h"
 #include "core/reference/private/surface.h"
+#include "core/reference/reference.h"
 #include "core/scene/environment_light.h"
 #include "glsl/light/rectangle_light.glsl"
 #include "glsl/scene/light.glsl"
 
 namespace limn::reference {
+
+/// Holds which light a request asks for: of Pose::lights those from `first` to the one before `last`, and
+/// whether that of the environment's map.
+struct AskedLights {
+  int first = 0, last = 0;
+  bool environment = false;
+  int count() const { return last - first; }
+};
+AskedLights askedLights(const Request& request);
 
 /// Holds light that arrives along a line, unless something blocks it.
 struct Arrival {
@@ -82,11 +92,10 @@ class ConeView {
   bool above_ = false;
 };
 
-/// Samples the environment; samples follow its radiance.
+/// Samples an environment that is not dark; samples follow its radiance.
 class EnvironmentView {
  public:
   explicit EnvironmentView(const scene::EnvironmentLight& environment) : environment_(environment) {}
-  bool dark() const { return !environment_.present(); }
   Arrival sample(glm::vec2 u) const { return towards(environment_.sample(u)); }
   Arrival towards(const glm::vec3& direction) const;
 

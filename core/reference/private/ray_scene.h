@@ -5,10 +5,13 @@
 #include <cstdint>
 #include <glm/glm.hpp>
 #include <memory>
+#include <mutex>
+#include <optional>
 #include <vector>
 
 #include "core/reference/private/ray_medium.h"
 #include "core/relief/slopes.h"
+#include "core/scene/environment_light.h"
 #include "core/scene/scene.h"
 #include "glsl/scene/blocks.glsl"
 
@@ -102,6 +105,8 @@ class RayScene {
   const scene::Scene& scene() const { return scene_; }
   const std::vector<Draw>& draws() const { return draws_; }
   const RayMedium& medium() const { return medium_; }
+  /// Returns the scene's environment. Its tables are made when it is asked for first, by whichever thread.
+  const scene::EnvironmentLight& environment() const;
   /// Returns the slopes of a map of Scene::heights, as textures.
   const std::vector<relief::SlopeLevel>& slopes(int height) const {
     return slopes_[static_cast<size_t>(height)];
@@ -120,9 +125,9 @@ class RayScene {
   /// there is one; cut-out texels (of the full-size level) are passed through.
   bool nearest(const glm::vec3& origin, const glm::vec3& direction, Hit& hit) const;
 
-  /// Finds the nearest surface of one draw of a translucent material on origin + t * direction, t > `from`,
-  /// seen from either side, and returns whether there is one.
-  bool nearestOfBody(uint32_t draw, const glm::vec3& origin, const glm::vec3& direction, float from,
+  /// Finds the nearest surface of one draw of a translucent material on origin + t * direction, `from` < t <
+  /// `to`, seen from either side, and returns whether there is one.
+  bool nearestOfBody(uint32_t draw, const glm::vec3& origin, const glm::vec3& direction, float from, float to,
                      Hit& hit) const;
 
   /// Returns the bounds of a draw of a translucent material, world.
@@ -144,6 +149,8 @@ class RayScene {
   std::vector<Draw> draws_;
   RayMedium medium_;
   std::vector<std::vector<relief::SlopeLevel>> slopes_;
+  mutable std::once_flag environmentAsked_;
+  mutable std::optional<scene::EnvironmentLight> environment_;
   std::unique_ptr<Hierarchy> hierarchy_;
 };
 

@@ -7,7 +7,6 @@
 
 #include "core/reference/private/sampler.h"
 #include "core/reference/private/surface.h"
-#include "core/scene/environment_light.h"
 
 namespace limn::reference {
 
@@ -52,7 +51,6 @@ class SpecularPaths {
   SpecularEnd throughBody(const Surface& seen, const glsl::Optics& optics, Ray ray) const;
 
   const RayScene& rays_;
-  scene::EnvironmentLight environment_;
   int interfaces_;
 };
 

@@ -2,6 +2,7 @@
 #include <gtest/gtest.h>
 
 #include <cmath>
+#include <memory>
 
 #include "core/reference/reference.h"
 #include "tests/support/reference_scene.h"
@@ -43,6 +44,17 @@ TEST(ReferenceGeometry, FarFromTheOriginPlanesDoNotShadowThemselves) {
   const Image image = render(request).image;
   for (int y = 0; y < 32; ++y)
     for (int x = 0; x < 32; ++x) EXPECT_EQ(image.at(x, y, image.channel("V")), 1.f) << x << " " << y;
+}
+
+/// As of a geometry source that returned nothing: its instance stays.
+TEST(ReferenceGeometry, WithoutTrianglesThereIsNothingToSee) {
+  const World world = busyWorld();
+  World gone = world;
+  gone.scene.dynamic.push_back({"gone", nullptr, 0});
+  gone.pose.dynamic.push_back({std::make_shared<const scene::Primitive>(), {}});
+  gone.pose.instances.emplace_back().mesh = 0;
+  const Image before = render(world.request(8, Term::final, 4)).image;
+  EXPECT_TRUE(sameBits(render(gone.request(8, Term::final, 4)).image, before));
 }
 
 TEST(ReferenceGeometry, InstancesEqualCopies) {

@@ -25,6 +25,13 @@ TEST(ReferenceRequest, NonsenseIsRefusedByName) {
     return "";
   };
   EXPECT_NE(message([](Request& r) { r.width = 0; }).find("size 0x16"), std::string::npos);
+  const auto tooLarge = [](Request& r) {
+    r.width = 32768;
+    r.height = 2400;
+  };
+  EXPECT_NE(message(tooLarge).find("size 32768x2400 with aa 1 has 1101004800 values; at most 1073741824"),
+            std::string::npos)
+      << "before any ray is traced";
   EXPECT_NE(message([](Request& r) { r.spp = 0; }).find("spp 0"), std::string::npos);
   for (const double noise : {-1.0, 1.5})
     EXPECT_NE(message([&](Request& r) { r.noise = noise; }).find("is not in 0 .. 1"), std::string::npos);

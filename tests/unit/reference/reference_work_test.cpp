@@ -130,6 +130,42 @@ TEST(ReferenceWork, ResumedEqualsUninterrupted) {
   EXPECT_FALSE(std::filesystem::exists(request.checkpoint));
 }
 
+/// Lights that stand for the environment are no part of a picture of all light: its work is taken up where
+/// they came or went meanwhile, and noise is tested at the same counts of samples.
+TEST(ReferenceWork, ResumedWithoutTheEnvironmentsLightsItMeetsItsNoise) {
+  const Folder folder;
+  const World world = busyWorld();
+  World decomposed = world;
+  for (int i = 0; i < 8000; ++i) {
+    glsl::Light& light = decomposed.addLight(glsl::light_directional, {0, 1, 0}, {0, -1, 0}, glm::vec3(1));
+    light.flags = glsl::light_flag_environment;
+    light.axis_u = {1, 0, 0};
+    light.axis_v = {0, 0, -1};
+    light.length_u = light.length_v = 0.1f;
+    light.solid_angle = 0.01f;
+  }
+  const double noise = render(world.request(16, Term::direct, 32)).noiseRms / 4;
+  const auto asked = [noise](const World& of) {
+    Request request = of.request(16, Term::direct, 1 << 14);
+    request.noise = noise;
+    return request;
+  };
+  const Result whole = render(asked(world));
+  ASSERT_GT(whole.spp, 32) << "else nothing is left to resume";
+  ASSERT_LT(whole.spp, 1 << 14);
+
+  Request first = asked(decomposed);
+  first.checkpoint = folder.path() / "work.partial";
+  first.progress = [](const Progress& p) { return p.spp < 22; };
+  EXPECT_THROW(render(first), Error);
+  ASSERT_TRUE(std::filesystem::exists(first.checkpoint));
+  Request second = asked(world);
+  second.checkpoint = first.checkpoint;
+  const Result resumed = render(second);
+  EXPECT_EQ(resumed.spp, whole.spp);
+  EXPECT_TRUE(sameBits(resumed.image, whole.image));
+}
+
 /// In less time than one pass over the picture takes on the same machine under the same load.
 TEST(ReferenceWork, StopsWithinAPass) {
   using Clock = std::chrono::steady_clock;
