@@ -72,6 +72,12 @@ std::size_t imagesOf(const scene::Scene& scene) {
   return names.size();
 }
 
+/// How many of the animations of a scene move anything: assimp writes those of morph targets without that.
+std::size_t animationsOf(const scene::Scene& scene) {
+  return static_cast<std::size_t>(std::ranges::count_if(
+      scene.animations, [](const scene::Animation& animation) { return !animation.channels.empty(); }));
+}
+
 /// The meshes in the JSON of a .glb that was read.
 nlohmann::json meshesOf(const fs::path& file) {
   std::array<char, 20> header{};
@@ -145,7 +151,7 @@ int run(const fs::path& model, fs::path out) {
   const std::pair<const char*, std::pair<std::size_t, std::size_t>> kinds[] = {
       {"cameras", {countOf(information, "Cameras"), scene.cameras.size()}},
       {"lights", {countOf(information, "Lights"), scene.lights.size()}},
-      {"animations", {countOf(information, "Animations"), scene.animations.size()}},
+      {"animations", {countOf(information, "Animations"), animationsOf(scene)}},
       {"materials", {countOf(information, "Materials"), scene.materials.size()}},
       {"textures", {texturesOf(information), imagesOf(scene)}},
       {"sets of texture coordinates", attributeSets(meshes, "TEXCOORD")},
@@ -155,7 +161,7 @@ int run(const fs::path& model, fs::path out) {
     if (counts.first > counts.second)
       lost.push_back(fmt::format("{} of {} {}", counts.first - counts.second, counts.first, kind));
   fmt::print("{}: {} triangles, {} materials, {} textures, {} animations, {}; {}\n", out.string(),
-             scene.triangles(), scene.materials.size(), scene.images.size(), scene.animations.size(),
+             scene.triangles(), scene.materials.size(), scene.images.size(), animationsOf(scene),
              size(evaluate(scene, 0).bounds),
              lost.empty() ? std::string("nothing that is counted was lost") : "lost: " + joined(lost));
   return 0;

@@ -313,6 +313,9 @@ void checkFinite(const Scene& scene, const Pose& pose) {
       });
   if (!allFinite || (!pose.bounds.empty() && !std::isfinite(pose.bounds.radius())))
     fail("the scene's extent is not a finite number; check the scales of its nodes");
+  for (const Deformation& d : pose.deformed)
+    if (!std::ranges::all_of(d.morphWeights, [](float weight) { return std::isfinite(weight); }))
+      fail(fmt::format("a morph weight of mesh {} is not a finite number; check its animation", d.mesh));
   const auto checkPlace = [&](const glm::vec3& place, const char* kind, const std::string& name) {
     if (!finite(place))
       fail(fmt::format("the place of {} '{}' is not finite; check the scales of the nodes above it", kind,

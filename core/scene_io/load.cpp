@@ -122,8 +122,12 @@ void Loader::readSmoke(const tinygltf::Value& smoke, const std::string& what) {
   s.low = corner("low");
   s.high = corner("high");
   const glm::vec3 extent = s.high - s.low;
-  if (!glm::all(glm::greaterThan(extent, glm::vec3(0))) || !(glm::length(extent) < 1e18f))
-    fail(what + ": low and high are corners of a box; each number of high is larger than that of low");
+  // Floats hold the squares of such sides.
+  constexpr float least = 1e-18f, most = 1e18f;
+  if (!glm::all(glm::greaterThan(extent, glm::vec3(least))) || !(glm::length(extent) < most))
+    fail(what +
+         ": low and high are corners of a box; each number of high is larger than that of low, by 1e-18 to "
+         "1e18");
   const auto real = [&](const char* key, double low, double high, double otherwise) {
     if (!smoke.Has(key)) return static_cast<float>(otherwise);
     const tinygltf::Value& value = smoke.Get(key);

@@ -207,6 +207,14 @@ void cleanNames(json& entries) {
     if (const auto name = entry.find("name"); name != entry.end()) *name = oneLine(name->get<std::string>());
 }
 
+/// tinygltf gives each sampler of an animation a copy of the animation's own extensions, of which none is
+/// read.
+void dropAnimationExtensions(json& root) {
+  const auto animations = root.find("animations");
+  if (animations == root.end()) return;
+  for (json& animation : *animations) animation.erase("extensions");
+}
+
 }  // namespace
 
 void Loader::parse(const Container& container, tinygltf::Model& model) {
@@ -225,6 +233,7 @@ void Loader::parse(const Container& container, tinygltf::Model& model) {
     if (const auto entries = root.find(list); entries != root.end()) cleanNames(*entries);
   if (const json::json_pointer lights("/extensions/KHR_lights_punctual/lights"); root.contains(lights))
     cleanNames(root[lights]);
+  dropAnimationExtensions(root);
   takeBuffers(document, container.binary);
   takeImages(document);
   decodeViews(document);

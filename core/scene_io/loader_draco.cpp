@@ -86,16 +86,19 @@ bool plainToo(const json& primitive, const json& root) {
   return primitive.contains("indices") && root.contains(bufferView);
 }
 
-/// Adds accessors of `arrays`, a buffer's bytes from `offset` on, and points the primitive at them.
+/// Adds accessors of `arrays`, a buffer's bytes from `offset` on, and points the primitive at them. They have
+/// of those that the file describes them by what is read: many primitives may name one that says much else.
 void pointAt(json& root, const Compressed& primitive, std::size_t buffer, std::uint64_t& offset) {
   for (std::size_t i = 0; i < primitive.targets.size(); ++i) {
     const Target& target = primitive.targets[i];
     const std::uint64_t bytes = i == 0 ? primitive.mesh.indices * sizeof(std::uint32_t)
                                        : primitive.mesh.attributeBytes(primitive.mesh.attributes[i - 1]);
-    json accessor = root["accessors"][target.accessor];
-    accessor["bufferView"] = root["bufferViews"].size();
-    accessor.erase("byteOffset");
-    accessor.erase("sparse");
+    const json& described = root["accessors"][target.accessor];
+    json accessor = {{"bufferView", root["bufferViews"].size()},
+                     {"componentType", described.at("componentType")},
+                     {"count", described.at("count")},
+                     {"normalized", described.value("normalized", false)},
+                     {"type", described.at("type")}};
     if (i == 0) accessor["componentType"] = 5125;
     root["bufferViews"].push_back({{"buffer", buffer}, {"byteOffset", offset}, {"byteLength", bytes}});
     *target.key = root["accessors"].size();

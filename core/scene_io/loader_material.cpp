@@ -63,20 +63,26 @@ std::optional<Image8> Loader::decodeImage(int index, bool another, const std::st
     warn(fmt::format("{}; {} {}", problem, what, another ? "takes its other image" : "goes without it"));
     return std::nullopt;
   };
-  Image8 decoded;
+  if (const auto known = unreadable_.find(index); known != unreadable_.end())
+    return withoutImage(known->second);
   try {
     bytes = imageBytes(source, label, storage);
     if (bytes.empty()) throw Error(label + ": it is empty; PNG, JPEG or WebP is accepted");
   } catch (const Error& error) {
-    return withoutImage(error.what());
+    return withoutImage(unreadable_[index] = error.what());
   }
-  checkImageSize(bytes, label);
+  // Before it is decoded: a damaged one may take as long as a sound one.
+  const std::uint64_t stated = statedTexels(bytes, label);
+  texels_ += stated;
+  Image8 decoded;
   try {
     decoded = readImage8Memory(bytes, label);
   } catch (const Error& error) {
-    return withoutImage(error.what());
+    return withoutImage(unreadable_[index] = error.what());
   }
-  texels_ += static_cast<std::uint64_t>(decoded.width) * static_cast<std::uint64_t>(decoded.height);
+  const std::uint64_t texels =
+      static_cast<std::uint64_t>(decoded.width) * static_cast<std::uint64_t>(decoded.height);
+  texels_ += texels - std::min(texels, stated);
   if (texels_ > limits_.imageTexels)
     fail(fmt::format("image {}: more than {} texels in all images", index, limits_.imageTexels));
   return decoded;
@@ -118,8 +124,7 @@ int Loader::readTextureImage(const tinygltf::Texture& texture, bool srgb, const 
                     [&](int index, bool another) { return readImage(index, another, srgb, what); });
 }
 
-/// A picture that states a size beyond the limits is refused before a decoder sees it.
-void Loader::checkImageSize(std::span<const std::byte> bytes, const std::string& label) const {
+std::uint64_t Loader::statedTexels(std::span<const std::byte> bytes, const std::string& label) const {
   const auto [width, height] = statedSize(bytes);
   if (width > static_cast<std::uint64_t>(kMaxImageSide) ||
       height > static_cast<std::uint64_t>(kMaxImageSide) ||
@@ -127,6 +132,7 @@ void Loader::checkImageSize(std::span<const std::byte> bytes, const std::string&
     fail(fmt::format("{}: {}x{} texels; at most {} per side and {} in all images are accepted", label, width,
                      height, kMaxImageSide, limits_.imageTexels));
   }
+  return width * height;
 }
 
 const tinygltf::Texture& Loader::textureAt(int index, const std::string& what) const {

@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "core/base/text.h"
 #include "core/scene/emissive_quad.h"
 #include "core/scene/primitive_tools.h"
 #include "core/scene/tangents.h"
@@ -241,6 +242,9 @@ void Loader::readMorphTargets(const tinygltf::Primitive& source, Primitive& out,
     if (const int a = attribute(attributes, "TANGENT");
         a != kNone && !out.tangents.empty() && !out.normals.empty())
       target.tangents = toVec3(readFloats(a, {3}, count, place + " TANGENT"));
+    for (const auto& [name, accessor] : attributes)
+      if ((name == "COLOR_0" && !out.colours.empty()) || (name.starts_with("TEXCOORD_") && !out.uvs.empty()))
+        warn(fmt::format("{}: morph targets of {} are ignored", what, oneLine(name, 40)));
     out.morphTargets.push_back(std::move(target));
   }
 }

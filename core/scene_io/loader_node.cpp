@@ -37,6 +37,13 @@ int lightOf(const tinygltf::Node& node) {
   return light.IsInt() ? light.GetNumberAsInt() : kNone;
 }
 
+/// Gives a matrix the last row 0, 0, 0, 1. Returns whether it had another one.
+bool makeAffine(glm::mat4& m) {
+  const glm::vec4 affine(0, 0, 0, 1), last = glm::row(m, 3);
+  m = glm::row(m, 3, affine);
+  return !glm::all(glm::lessThanEqual(glm::abs(last - affine), glm::vec4(kRounding)));
+}
+
 }  // namespace
 
 void Loader::orderNodes() {
@@ -123,10 +130,8 @@ Node Loader::readNode(const tinygltf::Node& source, const std::string& what) {
     glm::mat4 m;
     for (std::size_t i = 0; i < 16; ++i)
       m[static_cast<int>(i / 4)][static_cast<int>(i % 4)] = number(source.matrix[i], what + " matrix");
-    const glm::vec4 affine(0, 0, 0, 1), last = glm::row(m, 3);
-    if (!glm::all(glm::lessThanEqual(glm::abs(last - affine), glm::vec4(kRounding))))
-      warn(what + " matrix: its last row is not 0, 0, 0, 1, which is taken instead");
-    node.matrix = glm::row(m, 3, affine);
+    if (makeAffine(m)) warn(what + " matrix: its last row is not 0, 0, 0, 1, which is taken instead");
+    node.matrix = m;
   }
   if (source.translation.size() == 3) {
     for (int c = 0; c < 3; ++c)
@@ -239,10 +244,14 @@ void Loader::readSkins() {
       const Floats f = readFloats(source.inverseBindMatrices, {16}, -1, what + " inverseBindMatrices");
       if (f.count < skin.joints.size())
         fail(fmt::format("{}: {} inverse bind matrices for {} joints", what, f.count, skin.joints.size()));
+      bool changed = false;
       for (std::size_t k = 0; k < skin.joints.size(); ++k) {
         for (std::size_t e = 0; e < 16; ++e)
           skin.inverseBind[k][static_cast<int>(e / 4)][static_cast<int>(e % 4)] = f.values[16 * k + e];
+        changed = makeAffine(skin.inverseBind[k]) || changed;
       }
+      if (changed)
+        warn(what + " inverseBindMatrices: the last row of one is not 0, 0, 0, 1, which is taken instead");
     }
     scene_.skins.push_back(std::move(skin));
   }

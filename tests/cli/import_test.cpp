@@ -138,6 +138,28 @@ TEST_F(SlowImportTest, TheNextImportRemovesWhatAKilledOneLeft) {
   EXPECT_EQ(listing(folder_.path()), std::vector<std::string>{"a.obj"});
 }
 
+/// In the place of assimp a program that makes of an animation one that moves nothing, as assimp does of
+/// those of morph targets.
+TEST_F(ImportTest, AnimationsThatMoveNothingAreLost) {
+  GltfBuilder b;
+  b.triangle();
+  b.append("animations",
+           {{"samplers", GltfBuilder::json::array()}, {"channels", GltfBuilder::json::array()}});
+  const std::vector<std::byte> glb = b.glb();
+  const fs::path made = model("made", {reinterpret_cast<const char*>(glb.data()), glb.size()});
+  const TemporaryFolder programs;
+  const fs::path converter = programs / "assimp";
+  std::ofstream(converter)
+      << "#!/bin/sh\n[ \"$1\" = info ] && printf 'Model:\\nAnimations: 1\\n' && exit\ncp " << made.string()
+      << " \"$3\"\n";
+  fs::permissions(converter, fs::perms::owner_all);
+  const Outcome outcome = run({kLimnBinary, "import", model("a.obj", kObject)},
+                              {{"PATH", programs.path().string() + ":/usr/bin:/bin"}});
+  ASSERT_EQ(outcome.status, 0) << outcome.err;
+  EXPECT_THAT(outcome.out, testing::HasSubstr("0 animations"));
+  EXPECT_THAT(outcome.out, testing::HasSubstr("lost: 1 of 1 animations\n"));
+}
+
 TEST_F(ImportTest, RefusesInOneLine) {
   expectRefused(limn({"import", folder_ / "no.obj"}), 2, {"no.obj", "no such file"});
   const fs::path file = model("a.obj", kObject);

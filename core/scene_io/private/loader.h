@@ -240,7 +240,9 @@ class Loader {
   std::optional<Image8> decodeImage(int index, bool another, const std::string& what);
   /// Appends the image, with its smaller levels, to Scene::images and returns its index.
   int addImage(int index, bool srgb, Image8 image);
-  void checkImageSize(std::span<const std::byte> bytes, const std::string& label) const;
+  /// Returns how many texels a picture says that it has. Throws Error where they are beyond the limits,
+  /// before a decoder sees it.
+  std::uint64_t statedTexels(std::span<const std::byte> bytes, const std::string& label) const;
 
   // loader_mesh.cpp
   void readMeshes();
@@ -309,6 +311,7 @@ class Loader {
   std::vector<std::span<const std::byte>> buffers_;
   std::vector<std::vector<std::byte>> bufferStorage_;
   std::map<std::pair<int, bool>, int> imageIndex_;             ///< (image, sRGB) to Scene::images
+  std::map<int, std::string> unreadable_;                      ///< images that cannot be read, to why
   std::map<std::pair<int, float>, GlossyImage> glossyImages_;  ///< by image and glossiness factor
   std::map<int, int> maskIndex_;  ///< of Scene::images, to what maskOf() made of them
   /// Holds what tells resampled images apart: the index in Scene::images of what they show, and UvMap.

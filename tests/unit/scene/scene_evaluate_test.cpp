@@ -133,6 +133,21 @@ TEST(SceneEvaluate, PlacesBeyondWhatFloatsHoldAreRefused) {
   }
 }
 
+/// Weights between keys of which each is a number.
+TEST(SceneEvaluate, MorphWeightsBeyondWhatFloatsHoldAreRefused) {
+  GltfBuilder b;
+  b.triangle();
+  b.root["meshes"][0]["primitives"][0]["targets"] =
+      json::array({{{"POSITION", b.vec3(std::vector<glm::vec3>(3, glm::vec3(0, 0, 2)))}}});
+  const int input = b.floats({0, 1, 2}), output = b.floats({0, -3e38f, 3e38f});
+  b.append("animations", {{"samplers", {{{"input", input}, {"output", output}}}},
+                          {"channels", {{{"sampler", 0}, {"target", {{"node", 0}, {"path", "weights"}}}}}}});
+  const Scene scene = loadBuilt(b);
+  EXPECT_THAT([&] { evaluate(scene, 1.5); },
+              testing::ThrowsMessage<Error>(testing::AllOf(testing::StartsWith("at 1.5 s "),
+                                                           testing::HasSubstr("is not a finite number"))));
+}
+
 GltfBuilder skinned() {
   GltfBuilder b;
   const int joints = b.accessor(std::vector<glm::u8vec4>{{0, 1, 0, 0}, {0, 1, 0, 0}, {0, 1, 0, 0}},

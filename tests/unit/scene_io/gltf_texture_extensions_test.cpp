@@ -164,6 +164,27 @@ TEST(SpecularGlossiness, OneImageOfSeveralMaterialsIsReadOnce) {
       << "each material says so";
 }
 
+TEST(SpecularGlossiness, ADamagedImageOfSeveralMaterialsIsReadOnce) {
+  GltfBuilder b = glossy({{"specularGlossinessTexture", {{"index", 0}}}});
+  std::vector<std::byte> image = png(2, 2, std::vector<std::uint8_t>(16));
+  image[50] ^= std::byte{1};
+  b.append("images", {{"bufferView", b.view(image.data(), image.size())}, {"mimeType", "image/png"}});
+  b.append("textures", {{"source", 0}});
+  json& materials = b.root["materials"];
+  for (const double factor : {0.25, 0.5}) {
+    materials.push_back(json(materials[0]));
+    materials.back()["extensions"]["KHR_materials_pbrSpecularGlossiness"]["glossinessFactor"] = factor;
+  }
+  scene::LoadLimits limits;
+  limits.imageTexels = 4;
+  const Scene scene = scene::loadMemory(b.glb(), limits);
+  for (const Material& m : scene.materials) EXPECT_EQ(m.metalRoughTexture.image, scene::kNone);
+  EXPECT_EQ(std::ranges::count_if(scene.warnings,
+                                  [](const std::string& w) { return w.find("goes without it") < w.size(); }),
+            3)
+      << "each material says so";
+}
+
 TEST(SpecularGlossiness, WarnsOfTheMeanWhereColoursVary) {
   const auto warnings = [](const std::vector<std::uint8_t>& texels) {
     GltfBuilder b = glossy({{"specularGlossinessTexture", {{"index", 0}}}});

@@ -1,9 +1,9 @@
 // Files that are missing, unreadable or outside the scene's folder end in one line that names them.
-#include <sys/resource.h>
-#include <unistd.h>
+#include <string>
+#include <utility>
+#include <vector>
 
-#include <fstream>
-
+#include "tests/support/address_limit.h"
 #include "tests/support/png.h"
 #include "tests/support/scene_files.h"
 
@@ -69,24 +69,6 @@ TEST_F(SceneBadFile, BufferOutsideTheFolder) {
 }
 
 #if !defined(LIMN_SANITIZED)  // whose shadow memory takes terabytes of addresses
-/// A limit of addresses that is in force while it lives, above those that are in use.
-class AddressLimit {
- public:
-  explicit AddressLimit(rlim_t more) {
-    getrlimit(RLIMIT_AS, &before_);
-    rlim_t pages = 0;
-    std::ifstream("/proc/self/statm") >> pages;
-    const rlimit limit{pages * static_cast<rlim_t>(sysconf(_SC_PAGESIZE)) + more, before_.rlim_max};
-    setrlimit(RLIMIT_AS, &limit);
-  }
-  ~AddressLimit() { setrlimit(RLIMIT_AS, &before_); }
-  AddressLimit(const AddressLimit&) = delete;
-  AddressLimit& operator=(const AddressLimit&) = delete;
-
- private:
-  rlimit before_{};
-};
-
 /// A document of some kilobytes is no licence to take 32 GiB.
 TEST_F(SceneBadFile, AFileThatManyBuffersNameIsReadOnce) {
   std::filesystem::resize_file(write("scene/a.bin", {}), std::uintmax_t{64} << 20);
@@ -96,6 +78,19 @@ TEST_F(SceneBadFile, AFileThatManyBuffersNameIsReadOnce) {
   const std::filesystem::path file = write("scene/a.gltf", b.text());
   const AddressLimit limit(rlim_t{4} << 30);
   EXPECT_EQ(loadError(file), "");
+}
+
+/// tinygltf copies them.
+TEST_F(SceneBadFile, ExtensionsOfAnAnimationAreNotHeldForEachOfItsSamplers) {
+  GltfBuilder b;
+  nlohmann::json animation = {
+      {"channels", nlohmann::json::array()},
+      {"extensions", {{"EXT_unknown", {{"text", std::string(std::size_t{1} << 20, 'a')}}}}}};
+  for (int i = 0; i < 4096; ++i) animation["samplers"].push_back(nlohmann::json{{"input", 0}, {"output", 0}});
+  b.append("animations", std::move(animation));
+  const std::vector<std::byte> bytes = b.glb();
+  const AddressLimit limit(rlim_t{1} << 30);
+  EXPECT_EQ(loadError(bytes), "");
 }
 #endif
 

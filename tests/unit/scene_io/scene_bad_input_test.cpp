@@ -217,6 +217,19 @@ TEST(SceneBadInput, Images) {
   EXPECT_THAT(loadError(webp.glb(), limits), AllOf(HasSubstr("image 0"), HasSubstr("16384x4096 texels")));
 }
 
+/// A decoder may take as long for them as for sound ones.
+TEST(SceneBadInput, DamagedImagesCountWithTheSizeThatTheyState) {
+  std::vector<std::byte> damaged = png(2, 2, std::vector<std::uint8_t>(16));
+  damaged[50] ^= std::byte{1};
+  GltfBuilder b;
+  for (int i = 0; i < 3; ++i) b.texturedMaterial(damaged);
+  scene::LoadLimits limits;
+  limits.imageTexels = 12;
+  EXPECT_EQ(loadError(b.glb(), limits), "");
+  limits.imageTexels = 11;
+  EXPECT_THAT(loadError(b.glb(), limits), HasSubstr("image 2: 2x2 texels"));
+}
+
 TEST(SceneBadInput, WrongTypes) {
   for (const char* list : {"accessors", "buffers", "bufferViews", "images", "materials", "meshes", "nodes",
                            "scenes", "skins", "textures", "animations", "cameras", "samplers"}) {

@@ -201,6 +201,10 @@ TEST(SceneBadInput, Extras) {
   EXPECT_THAT(loadError(medium.glb()), HasSubstr("smoke: an object {low, high,"));
   smoke["smoke"] = {{"low", {0, 0, 0}}, {"high", {1, 0, 1}}};
   EXPECT_THAT(loadError(medium.glb()), HasSubstr("each number of high is larger"));
+  for (const double side : {1e-30, 1e30}) {
+    smoke["smoke"] = {{"low", {0, 0, 0}}, {"high", {side, side, side}}};
+    EXPECT_THAT(loadError(medium.glb()), HasSubstr("each number of high is larger")) << side;
+  }
   smoke["smoke"] = {{"low", {0, 0, 0}}};
   EXPECT_THAT(loadError(medium.glb()), HasSubstr("smoke high: 3 numbers are accepted"));
   smoke["smoke"] = {{"low", {0, 0, 0}}, {"high", {1, 1, 1}}, {"rise", "fast"}};

@@ -330,6 +330,20 @@ TEST(SceneLoad, MatricesAreAffine) {
     EXPECT_EQ(scene->nodes.at(0).matrix, glm::translate(glm::mat4(1), glm::vec3(7, 0, 0)));
 }
 
+TEST(SceneLoad, BindMatricesAreAffine) {
+  const glm::mat4 moved = glm::translate(glm::mat4(1), glm::vec3(7, 0, 0));
+  glm::mat4 bind = moved;
+  bind[0][3] = 0.5f;
+  bind[3][3] = 2;
+  GltfBuilder b;
+  b.node(json::object());
+  const int matrices = b.accessor(std::vector<glm::mat4>{bind}, GltfBuilder::kFloat, "MAT4");
+  b.append("skins", {{"joints", {0}}, {"inverseBindMatrices", matrices}});
+  const Scene loaded = loadBuilt(b);
+  EXPECT_THAT(loaded.warnings, ElementsAre(HasSubstr("skin 0 inverseBindMatrices: the last row of one is")));
+  EXPECT_EQ(loaded.skins.at(0).inverseBind.at(0), moved);
+}
+
 TEST(SceneLoad, OnlyTheDefaultSceneIsDrawn) {
   GltfBuilder b;
   b.triangle();
