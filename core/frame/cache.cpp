@@ -1,8 +1,8 @@
 // Which passes may be skipped because their results are still there.
 //
-// A cacheable pass runs again when an imported resource it uses was touched, when a pass that it reads from
-// runs, or when its results were destroyed: a resource that is written several times a frame holds only the
-// last contents, so its writers run all together or not at all.
+// A cacheable pass runs again when an imported resource it uses was touched, when one of its programs was
+// reloaded, when a pass that it reads from runs, or when its results were destroyed: a resource that is
+// written several times a frame holds only the last contents, so its writers run all together or not at all.
 #include <algorithm>
 
 #include "core/frame/private/access.h"
@@ -69,6 +69,14 @@ bool importsChanged(const Graph& graph, const Pass& pass) {
   });
 }
 
+/// Whether shaders were reloaded since the pass ran, whoever had them reloaded: graphs share programs.
+bool programsChanged(const Graph& graph, const Pass& pass) {
+  return std::any_of(pass.programs.begin(), pass.programs.end(), [&](uint32_t index) {
+    const ProgramUse& use = graph.programs[index];
+    return use.ranWith != use.program->serial();
+  });
+}
+
 }  // namespace
 
 void planCache(Graph& graph) {
@@ -84,7 +92,7 @@ void decideRuns(Graph& graph) {
   const auto runs = [&](uint32_t p) { return graph.passes[p].kept && graph.passes[p].run; };
   for (uint32_t p : graph.order) {
     Pass& pass = graph.passes[p];
-    pass.run = pass.alwaysRun || !pass.valid || importsChanged(graph, pass);
+    pass.run = pass.alwaysRun || !pass.valid || importsChanged(graph, pass) || programsChanged(graph, pass);
   }
   for (bool changed = true; changed;) {
     changed = false;
@@ -110,6 +118,8 @@ void noteRun(Graph& graph, Pass& pass) {
     seen.revision = r.revision;
     seen.id = importedId(r);
   }
+  for (const uint32_t index : pass.programs)
+    graph.programs[index].ranWith = graph.programs[index].program->serial();
 }
 
 }  // namespace limn::frame

@@ -119,8 +119,6 @@ enum class PassRole : uint8_t {
   technique,  ///< any other work of a technique, or of a service on behalf of techniques
 };
 LIMN_API std::string_view name(PassRole role);
-/// Returns the role of that name, the inverse of name(). Throws Error for any other text.
-LIMN_API PassRole passRoleFromName(std::string_view text);
 
 class FrameGraph;
 
@@ -194,7 +192,9 @@ class LIMN_API PassBuilder {
   /// Adds another name for the resource that was read or written last, for example for another level of an
   /// image.
   PassBuilder& also(const ShaderName& name);
-  /// Declares a resource outside the graph that never changes while the graph lives, and must outlive it.
+  /// Declares a resource outside the graph, which must outlive it. Neither the cache nor barriers follow it:
+  /// where its contents change, a declared resource stands for it, or the CPU alone writes it and the pass is
+  /// not cacheable.
   PassBuilder& constant(std::string_view name, const gpu::Buffer& buffer);
   PassBuilder& constant(std::string_view name, const gpu::Texture& texture);
   /// Declares a name to which PassContext::bind() binds something while the pass executes.
@@ -202,8 +202,8 @@ class LIMN_API PassBuilder {
   /// Declares a program that the pass uses; it is compiled when the graph is prepared, and only if the pass
   /// is kept.
   ProgramHandle program(gpu::ProgramDesc desc);
-  /// Declares that the outputs depend only on the declared inputs: while none of those changes, the pass is
-  /// skipped and its outputs are kept (in memory of their own, never aliased).
+  /// Declares that the outputs depend only on the declared inputs and programs: while none of those changes,
+  /// the pass is skipped and its outputs are kept (in memory of their own, never aliased).
   PassBuilder& cacheable();
   /// Declares that the pass has effects outside the graph; it is never left out and never served from the
   /// cache.
@@ -355,7 +355,7 @@ class LIMN_API FrameGraph {
   /// Declares that the contents of an imported resource, or the object behind it, changed.
   void touch(TextureHandle imported);
   void touch(BufferHandle imported);
-  /// Forgets every cached result (after a shader was reloaded, for example).
+  /// Forgets every cached result.
   void invalidate();
   /// Says whether execution should stop; asked before each pass that runs. A GPU may have all earlier passes
   /// still to do then, as nothing waits for it: to stop what takes it long, this waits itself (glFinish).

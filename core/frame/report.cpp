@@ -179,12 +179,6 @@ std::string_view name(PassRole role) {
   return "unknown";
 }
 
-PassRole passRoleFromName(std::string_view text) {
-  for (const PassRole role : {PassRole::core, PassRole::map, PassRole::filter, PassRole::technique})
-    if (text == name(role)) return role;
-  throw Error(fmt::format("pass role '{}' is unknown; expected core, map, filter or technique", text));
-}
-
 std::string_view name(PassState state) {
   switch (state) {
     case PassState::run:

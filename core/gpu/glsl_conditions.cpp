@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cctype>
 #include <iterator>
+#include <limits>
 #include <optional>
 
 #include "core/base/text.h"
@@ -27,6 +28,12 @@ int strengthOf(std::string_view text) {
   return -1;
 }
 
+/// Returns a number that every compiler holds. What others make of larger ones is their own choice.
+Operand within32Bits(int64_t number) {
+  constexpr int64_t least = std::numeric_limits<int32_t>::min(), most = std::numeric_limits<int32_t>::max();
+  return number >= least && number <= most ? Operand(number) : std::nullopt;
+}
+
 Operand applied(std::string_view text, const Operand& a, const Operand& b) {
   if (text == "&&" && (a == 0 || b == 0)) return 0;
   if (text == "||" && ((a && a != 0) || (b && b != 0))) return 1;
@@ -41,9 +48,9 @@ Operand applied(std::string_view text, const Operand& a, const Operand& b) {
   if (text == ">") return *a > *b;
   if (text == "<=") return *a <= *b;
   if (text == ">=") return *a >= *b;
-  if (text == "+") return *a + *b;
-  if (text == "-") return *a - *b;
-  return *a * *b;
+  if (text == "+") return within32Bits(*a + *b);
+  if (text == "-") return within32Bits(*a - *b);
+  return within32Bits(*a * *b);
 }
 
 /// Reads a condition by recursive descent.

@@ -131,10 +131,6 @@ void Program::set(const char* name, float value) {
   device_->gl().ProgramUniform1f(id_, location(name), value);
 }
 
-void Program::set2(const char* name, float x, float y) {
-  device_->gl().ProgramUniform2f(id_, location(name), x, y);
-}
-
 void Program::set4(const char* name, const float* value) {
   device_->gl().ProgramUniform4fv(id_, location(name), 1, value);
 }

@@ -213,7 +213,6 @@ class LIMN_API Program : public Object {
   void set(const char* name, int value);
   void set(const char* name, unsigned value);
   void set(const char* name, float value);
-  void set2(const char* name, float x, float y);
   void set4(const char* name, const float* value);
 
  private:

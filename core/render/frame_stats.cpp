@@ -1,14 +1,11 @@
 #include "core/render/frame_stats.h"
 
-#include <fmt/format.h>
-
 #include <algorithm>
 #include <chrono>
 #include <cmath>
 #include <map>
 #include <nlohmann/json.hpp>
 
-#include "core/base/error.h"
 #include "core/render/renderer.h"
 
 namespace limn::render {
@@ -25,22 +22,6 @@ constexpr int kMostFramesOfSample = 256;
 
 Json toJsonValue(const Quartiles& q) {
   return {{"median", q.median}, {"q1", q.q1}, {"q3", q.q3}, {"n", q.n}};
-}
-
-Quartiles quartilesFrom(const Json& json) {
-  return {json.at("median"), json.at("q1"), json.at("q3"), json.at("n")};
-}
-
-frame::PassState stateFrom(const std::string& text) {
-  for (frame::PassState state : {frame::PassState::run, frame::PassState::cached, frame::PassState::leftOut})
-    if (text == frame::name(state)) return state;
-  throw Error(fmt::format("pass state '{}' is unknown; expected run, cached or left_out", text));
-}
-
-frame::Timing timingFrom(const std::string& text) {
-  for (frame::Timing timing : {frame::Timing::off, frame::Timing::query, frame::Timing::finish})
-    if (text == frame::name(timing)) return timing;
-  throw Error(fmt::format("timer '{}' is unknown; expected off, query or finish", text));
 }
 
 double millisecondsSince(Clock::time_point start) {
@@ -213,41 +194,6 @@ std::string toJson(const FrameStats& stats) {
               {"shadow_maps", shadowMaps},
               {"uncovered_pixels", stats.uncoveredPixels}}
       .dump(-1, ' ', false, Json::error_handler_t::replace);
-}
-
-FrameStats frameStatsFromJson(const std::string& text) {
-  try {
-    const Json json = Json::parse(text);
-    FrameStats stats;
-    stats.renderer = json.at("renderer");
-    stats.backend = json.at("backend");
-    stats.software = json.at("software");
-    stats.timer = timingFrom(json.at("timer"));
-    stats.dynamic = json.at("dynamic");
-    stats.width = json.at("size").at(0);
-    stats.height = json.at("size").at(1);
-    stats.framesPerPicture = json.value("frames_per_picture", 1);
-    stats.scene = json.at("scene");
-    stats.technique = json.at("technique");
-    for (const auto& [name, value] : json.at("parameters").items())
-      stats.parameters.emplace_back(name, value);
-    stats.frameMs = quartilesFrom(json.at("frame_ms"));
-    stats.frameSamplesMs = json.at("frame_samples_ms").get<std::vector<double>>();
-    stats.passSumMs = json.at("pass_sum_ms");
-    stats.memoryBytes = json.at("memory_bytes");
-    for (const Json& pass : json.at("passes"))
-      stats.passes.push_back({pass.at("name"), pass.at("technique"),
-                              frame::passRoleFromName(pass.at("role").get<std::string>()),
-                              stateFrom(pass.at("state")), pass.at("reason"), quartilesFrom(pass.at("ms")),
-                              pass.at("bytes"), pass.value("triangles", uint64_t{0})});
-    for (const Json& fit : json.at("shadow_maps"))
-      stats.shadowMaps.push_back({fit.at("light"), fit.at("projection"), fit.at("layers"), fit.at("near"),
-                                  fit.at("far"), fit.at("half_angle")});
-    stats.uncoveredPixels = json.at("uncovered_pixels");
-    return stats;
-  } catch (const nlohmann::json::exception& error) {
-    throw Error(fmt::format("frame statistics are not as expected: {}", error.what()));
-  }
 }
 
 }  // namespace limn::render

@@ -89,7 +89,5 @@ LIMN_API std::vector<double> timeOwnPasses(Renderer& renderer, std::string_view 
 LIMN_API FrameStats measure(Renderer& renderer, int frames, int warmup = 3, const Playback& playback = {});
 
 LIMN_API std::string toJson(const FrameStats& stats);
-/// Reads the statistics from such a JSON object. Throws Error for text that is not one.
-LIMN_API FrameStats frameStatsFromJson(const std::string& text);
 
 }  // namespace limn::render

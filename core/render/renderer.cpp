@@ -182,7 +182,6 @@ void Renderer::describeShadowMaps(FrameStats& stats) const {
 
 Renderer::Reload Renderer::reloadShaders() {
   gpu::ShaderLibrary::ReloadResult result = implementation_->shaders.reload();
-  if (result.reloaded > 0 && implementation_->graph) implementation_->graph->invalidate();
   return {result.changed, result.reloaded, std::move(result.errors)};
 }
 

@@ -11,7 +11,7 @@ layout(rgba32f) writeonly uniform image2D radiance;
 void main() {
   ivec2 pixel = ivec2(gl_GlobalInvocationID.xy);
   if (any(greaterThanEqual(pixel, imageSize(radiance)))) return;
-  uint flags = uint(texelFetch(gbuffer_material, pixel, 0).a * 255.0 + 0.5);
+  uint flags = gbuffer_stored_flags(texelFetch(gbuffer_material, pixel, 0));
   vec4 light = texelFetch(beside, pixel, 0);
   if ((flags & gbuffer_flag_specular) != 0u) {
     light.rgb = texelFetch(gbuffer_emission, pixel, 0).rgb + texelFetch(seen, pixel, 0).rgb;

@@ -282,5 +282,42 @@ TEST_F(FrameGraphNames, PlacesAreFoundAgainWhenShadersWereReloaded) {
         << "frame " << frame;
 }
 
+/// Graphs share programs, so that whoever has them reloaded need not know of each.
+TEST_F(FrameGraphNames, WhatAReloadedProgramMadeIsMadeAgain) {
+  const test::TemporaryFolder folder;
+  const auto write = [&](int value, int seconds) {
+    const auto path = folder / "value.comp.glsl";
+    std::ofstream(path) << "layout(local_size_x = 8, local_size_y = 8) in;\n"
+                           "layout(r32f) writeonly uniform image2D target;\n"
+                           "void main() { imageStore(target, ivec2(gl_GlobalInvocationID.xy), vec4("
+                        << value << ")); }\n";
+    std::filesystem::last_write_time(
+        path, std::filesystem::file_time_type::clock::now() + std::chrono::seconds(seconds));
+  };
+  shaders().mount("techniques/reloaded/", {}, folder.path());
+  write(5, 1);
+  FrameGraph graph;
+  graph.output(set(graph, "other", 1, true));
+  PassBuilder pass = graph.addPass("value");
+  const TextureHandle value = pass.write(target(graph), Access::imageStore, "target", "");
+  const ProgramHandle run = pass.program({{"techniques/reloaded/value.comp.glsl"}, {}});
+  pass.cacheable().execute([run](PassContext& context) {
+    context.use(run);
+    context.dispatch(kSize, kSize, 1, 8, 8);
+  });
+  const TextureHandle sum = add(graph, "sum", value, 2, true);
+  graph.output(sum);
+  prepare(graph);
+  graph.execute();
+  EXPECT_THAT(read(graph.texture(sum)), Each(7.f));
+  write(6, 2);
+  EXPECT_EQ(shaders().reload().reloaded, 1);
+  graph.execute();
+  EXPECT_THAT(states(graph), ElementsAre("other cached", "value run", "sum run"));
+  EXPECT_THAT(read(graph.texture(sum)), Each(8.f));
+  graph.execute();
+  EXPECT_THAT(states(graph), Each(HasSubstr(" cached")));
+}
+
 }  // namespace
 }  // namespace limn::frame

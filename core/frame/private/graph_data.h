@@ -129,6 +129,7 @@ struct ProgramUse {
   // After prepare().
   uint64_t placesOf = 0;  ///< serial of the program they were asked of: another after shaders were reloaded
   std::vector<Place> places;  ///< slots among them
+  uint64_t ranWith = 0;       ///< serial of the program when the pass ran last
   int dispatches = 0;         ///< in the last frame
   std::array<GLuint, 3> groups = {};
 };

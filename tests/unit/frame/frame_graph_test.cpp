@@ -173,12 +173,6 @@ TEST(FrameGraphRoles, AreThoseOfTheOwnerUnlessAPassSaysOtherwise) {
                                  PassRole::technique, PassRole::core));
 }
 
-TEST(FrameGraphRoles, AreReadFromTheirNames) {
-  for (const PassRole role : {PassRole::core, PassRole::map, PassRole::filter, PassRole::technique})
-    EXPECT_EQ(passRoleFromName(name(role)), role);
-  EXPECT_THROW(passRoleFromName("shadow"), Error);
-}
-
 TEST(FrameGraphProblems, ContentsNobodyWroteAreNamedWithTheirUse) {
   FrameGraph graph;
   graph.addPass("blur", "vssm")

@@ -44,8 +44,12 @@ TEST(GlslConditions, AreUnknownWhereFilesMayDecide) {
                                 "SIX ? 1 : 0",
                                 "FUNCTION(1)",
                                 "SIX ==",
-                                "99999999999"})
+                                "99999999999",
+                                "2147483647 + SIX > 0",
+                                "LESS - 2147483647 - SIX < 0",
+                                "65536 * 65536 * 65536 * 65536 == 0"})
     EXPECT_EQ(holds(condition), Holds::unknown) << condition;
+  EXPECT_EQ(holds("46340 * 46340 > 0"), Holds::yes) << "32 bits hold it";
   EXPECT_EQ(holds("OTHER && ZERO"), Holds::no);
   EXPECT_EQ(holds("SIX || OTHER"), Holds::yes);
   EXPECT_EQ(holds("defined(OTHER) && ZERO"), Holds::no);
