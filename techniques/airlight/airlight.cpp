@@ -5,6 +5,7 @@
 #include "core/gpu_scene/gpu_medium.h"
 #include "core/gpu_scene/light_textures.h"
 #include "core/shadow/alike_lights.h"
+#include "core/shadow/sample_batches.h"
 #include "core/shadow/shadow_map.h"
 #include "core/shadow/visibility_pass.h"
 #include "core/technique/technique.h"
@@ -37,11 +38,9 @@ struct Part {
   int firstMap, endMap, firstStretch, endStretch;
 };
 
-/// Returns the passes for `maps` maps: one, but for software renderers. llvmpipe leaves all loops of a thread
-/// after 65,535 steps in all. `way`: steps at most that a way through a grid takes; 0: there is none.
-std::vector<Part> partsOf(bool software, int maps, int steps, int way) {
-  if (!software) return {{0, maps, 0, steps}};
-  constexpr int most = 65535;
+/// Returns the passes for `maps` maps, whose loops take at most `most` steps together (mostStepsOfLoops):
+/// one, but for software renderers. `way`: steps at most that a way through a grid takes; 0: there is none.
+std::vector<Part> partsOf(int most, int maps, int steps, int way) {
   // Eight rays are followed at once, and may wait for each other at all of their borders of shadows. Each
   // stretch is a step of both loops over stretches, may have 6 refinements, and has two nodes.
   const int ofStretch = 8 * (8 + 2 * way);
@@ -84,7 +83,7 @@ class Airlight : public Technique {
     for (const shadow::AlikeLights& alike :
          shadow::alikeLights(inputs.service<shadow::ShadowMapService>().layouts(maps)))
       for (const Part& part :
-           partsOf(inputs.gpuScene.device().software(), static_cast<int>(alike.layers.size()) * samples,
+           partsOf(shadow::mostStepsOfLoops(inputs), static_cast<int>(alike.layers.size()) * samples,
                    p.integer("steps"), way))
         target = addPass(graph, inputs, maps, alike, part, target);
     return target;

@@ -3,11 +3,13 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <limits>
 
 #include "core/base/error.h"
 #include "core/gpu_scene/gpu_medium.h"
 #include "core/gpu_scene/gpu_scene.h"
 #include "core/radiosity/illumination.h"
+#include "core/shadow/sample_batches.h"
 
 namespace limn::implicit_visibility {
 
@@ -50,6 +52,7 @@ ElementPasses::ElementPasses(frame::FrameGraph& graph, const TechniqueInputs& in
                 settings.links.fill == radiosity::Fill::triangles ? radiosity::LeafShape::triangles
                                                                   : radiosity::LeafShape::disc) {
   createBuffers(inputs.gpuScene.device());
+  boundedLoops_ = shadow::mostStepsOfLoops(inputs) < std::numeric_limits<int>::max();
   groups = graph.importBuffer("element groups", groupBuffer_);
   leaves = graph.importBuffer("leaves", leafBuffer_);
   corners = graph.importBuffer("triangles between leaves", cornerBuffer_);
@@ -139,7 +142,7 @@ void ElementPasses::addLinks(frame::FrameGraph& graph) {
 
 void ElementPasses::addGpuLinks(frame::FrameGraph& graph) {
   // llvmpipe leaves the loops of a thread after 65,535 steps; a leaf takes about five for each bin it fills.
-  if (software_ && settings_.links.resolution > 16)
+  if (boundedLoops_ && settings_.links.resolution > 16)
     throw UsageError(
         fmt::format("implicit_visibility.links=gpu: software renderers take at most 16 bins a side, not {}",
                     settings_.links.resolution));
@@ -186,7 +189,7 @@ void ElementPasses::addGpuLinks(frame::FrameGraph& graph, LinkChunk& chunk) cons
   const auto leafCount = static_cast<int64_t>(chunk.count);
   addStep("clear links", "clear_links.comp.glsl", Access::storageStore, leafCount, {0, 0});
   const auto rootCount = static_cast<uint32_t>(elements_.forest().roots().size());
-  const uint32_t batch = software_ ? 16 : std::max(rootCount, 1u);
+  const uint32_t batch = boundedLoops_ ? 16 : std::max(rootCount, 1u);
   for (uint32_t first = 0; first < rootCount; first += batch)
     addStep("links", "links.comp.glsl", Access::storageLoadStore, (leafCount + 63) / 64,
             {first, std::min(batch, rootCount - first)});

@@ -117,6 +117,7 @@ class ElementPasses {
   gpu::Buffer groupBuffer_, leafBuffer_, cornerBuffer_, directions_, materialBuffer_, rootBuffer_,
       firstTriangleBuffer_;
   bool software_ = false;
+  bool boundedLoops_ = false;       ///< shaders leave loops early, whichever paths the device takes
   mutable bool linksRead_ = false;  ///< by shaders; else those that the processor made stay in its memory
   frame::BufferHandle roots_, firstTriangles_;
   std::deque<gpu::Buffer> linkBuffers_;  ///< the graph keeps their addresses

@@ -1,8 +1,12 @@
 // Surface caustics: light that specular objects reflect or refract onto other surfaces, as photons splatted
 // on the screen, or into a caustic map of the light.
+#include <fmt/format.h>
+
 #include <array>
+#include <cstdint>
 #include <utility>
 
+#include "core/base/error.h"
 #include "core/caustics/ray_lines.h"
 #include "core/caustics/ray_lists.h"
 #include "core/gpu_scene/gpu_medium.h"
@@ -17,6 +21,7 @@ using frame::Access;
 
 constexpr const char* kSplatNames[] = {"screen", "light"};
 constexpr int kSplatLight = 1;
+constexpr int64_t kMostMapBytes = int64_t{4} << 30;  ///< of caustic maps, as of the shadow maps of a request
 
 constexpr auto kParameters = caustics::rayParameters(std::to_array<Parameter>({
     caustics::beamCosineParameter(),
@@ -164,9 +169,23 @@ class SurfaceCaustics : public Technique {
     return draws;
   }
 
+  /// Throws UsageError where caustic maps would take too much memory: a texel takes more than one of a shadow
+  /// map does.
+  static void checkMaps(const shadow::ShadowMaps& scene) {
+    constexpr int64_t bytesPerTexel = 16;
+    const int64_t bytes = bytesPerTexel * scene.size * scene.size * scene.layers;
+    if (bytes > kMostMapBytes)
+      throw UsageError(
+          fmt::format("surface_caustics: caustic maps of {} layers of {} x {} texels take {} MiB, more than "
+                      "the {} MiB that they may; ask for a smaller scene_map_size, fewer light_samples or "
+                      "fewer lights at once",
+                      scene.layers, scene.size, scene.size, bytes >> 20, kMostMapBytes >> 20));
+  }
+
   /// The same by way of caustic maps: irradiance on what the lights' scene maps show, texel by texel.
   frame::TextureHandle addMaps(frame::FrameGraph& graph, Photons photons) {
     const caustics::CausticRays& rays = photons.rays;
+    checkMaps(rays.scene);
     const frame::BufferHandle draws = addMapDraws(graph, photons);
     frame::PassBuilder pass = graph.addPass("caustic map", info.name);
     photons.declare(pass, true);

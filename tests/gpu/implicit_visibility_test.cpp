@@ -2,38 +2,18 @@
 #include <algorithm>
 #include <cmath>
 #include <cstdio>
-#include <cstdlib>
-#include <optional>
 #include <set>
 #include <utility>
 
 #include "core/base/error.h"
 #include "core/reference/reference.h"
 #include "tests/gpu/ball_scene.h"
+#include "tests/gpu/paths_of_devices.h"
 #include "tests/gpu/render_test.h"
 #include "tests/support/scene_nodes.h"
 
 namespace limn {
 namespace {
-
-/// Has devices that are made while it lives take the paths for GPUs, or those that their renderer is for.
-class PathsOfDevices {
- public:
-  explicit PathsOfDevices(bool hardware) {
-    if (const char* value = std::getenv(kName)) before_ = value;
-    set(hardware ? std::optional<std::string>("1") : std::nullopt);
-  }
-  ~PathsOfDevices() { set(before_); }
-  PathsOfDevices(const PathsOfDevices&) = delete;
-  PathsOfDevices& operator=(const PathsOfDevices&) = delete;
-
- private:
-  static constexpr const char* kName = "LIMN_HARDWARE_PATHS";
-  static void set(const std::optional<std::string>& value) {
-    value ? setenv(kName, value->c_str(), 1) : unsetenv(kName);
-  }
-  std::optional<std::string> before_;
-};
 
 class ImplicitVisibilityTest : public RenderTest {
  protected:
@@ -156,6 +136,19 @@ TEST_F(ImplicitVisibilityTest, EveryPairIsNotTriedOnTheGpu) {
               settings(8, 8, Term::final,
                        {technique("implicit_visibility", {{"links", "gpu"}, {"structure", "flat"}})})),
       UsageError);
+}
+
+/// llvmpipe leaves the loops that make links early, whichever paths its device takes.
+TEST_F(ImplicitVisibilityTest, SoftwareRenderersMakeNoLinksIntoManyBins) {
+  if (!context().info().software) GTEST_SKIP() << "GPUs leave no loop early";
+  const scene::Scene scene = asset("cornell_box");
+  for (const bool hardware : {false, true}) {
+    const PathsOfDevices paths(hardware);
+    gpu::Device own(context());
+    render::Renderer renderer(own, scene);
+    EXPECT_THROW(indirect(renderer, {{"bins", "32"}, {"links", "gpu"}, {"longest_edge", "1"}}), UsageError)
+        << (hardware ? "paths for GPUs" : "paths for software renderers");
+  }
 }
 
 /// Figure 4.2 of the thesis: higher levels have fewer colours, and the element in the middle is white among

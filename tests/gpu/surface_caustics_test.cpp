@@ -1,10 +1,12 @@
 // Caustics on surfaces against the reference, splatted on the screen and into maps of the light.
 #include <fmt/format.h>
+#include <gmock/gmock.h>
 
 #include <cmath>
 #include <string>
 #include <vector>
 
+#include "core/base/error.h"
 #include "core/render/supersample.h"
 #include "core/scene/camera.h"
 #include "core/scene/material_model.h"
@@ -303,6 +305,20 @@ TEST_F(SurfaceCausticsTest, CausticMapsOfCubesHaveNoSeams) {
                                            {technique("surface_caustics", {{"splat", where}})})));
   };
   EXPECT_NEAR(brightness("light") / brightness("screen"), 1, 0.02);
+}
+
+/// Depth maps of a lamp of 8192 x 8192 texels a face fit what a request may take; caustic maps of as many
+/// texels would take 6 GiB.
+TEST_F(SurfaceCausticsTest, CausticMapsThatTakeTooMuchMemoryAreRefused) {
+  scene::Scene scene = asset("glass_sphere");
+  for (scene::LightSource& light : scene.lights) light.type = glsl::light_point;
+  render::Renderer renderer(device(), scene);
+  const auto draw = [&] {
+    picture(renderer,
+            settings(8, 6, Term::caustic,
+                     {technique("surface_caustics", {{"splat", "light"}, {"scene_map_size", "8192"}})}));
+  };
+  EXPECT_THAT(draw, testing::ThrowsMessage<UsageError>(testing::HasSubstr("caustic maps of 6 layers")));
 }
 
 }  // namespace
