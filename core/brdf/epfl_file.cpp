@@ -11,7 +11,6 @@
 #include <vector>
 
 #include "core/base/error.h"
-#include "core/base/file.h"
 #include "core/brdf/measured_file.h"
 #include "core/brdf/private/tensor_file.h"
 #include "core/brdf/private/visible_normals.h"
@@ -213,10 +212,6 @@ MeasuredBrdf decodeEpfl(std::span<const std::byte> bytes, std::string_view name,
   } catch (const Error& error) {
     throw Error(fmt::format("{}: {}", name, error.what()));
   }
-}
-
-MeasuredBrdf readEpfl(const std::filesystem::path& path, const EpflNodes& nodes) {
-  return decodeEpfl(readFile(path, kLargestMeasuredFile), path.string(), nodes);
 }
 
 }  // namespace limn::brdf

@@ -3,7 +3,6 @@
 #pragma once
 
 #include <cstddef>
-#include <filesystem>
 #include <glm/glm.hpp>
 #include <span>
 #include <string_view>
@@ -31,6 +30,5 @@ struct EpflNodes {
 /// where f is no number at a texel of an anisotropic table.
 LIMN_API MeasuredBrdf decodeEpfl(std::span<const std::byte> bytes, std::string_view name,
                                  const EpflNodes& nodes = {});
-LIMN_API MeasuredBrdf readEpfl(const std::filesystem::path& path, const EpflNodes& nodes = {});
 
 }  // namespace limn::brdf

@@ -111,9 +111,14 @@ class Strip {
       : picture_(picture), top_(top), height_(height), most_(most) {
     for (int y = 0; y < height; ++y)
       for (int x = 0; x < picture.width(); ++x) paint(picture, {x, top + y}, dvec3(0));
-    for (int quarter = 0; quarter <= 4 * most; ++quarter)
-      for (int x = 0; x < picture.width(); ++x)
-        paint(picture, {x, top + row(quarter / 4.0)}, dvec3(quarter == 4 ? 0.4 : 0.08));
+    const auto drawLevel = [&](double albedo, double brightness) {
+      for (int x = 0; x < picture.width(); ++x) paint(picture, {x, top + row(albedo)}, dvec3(brightness));
+    };
+    // Less than two rows apart they would fill the strip, and of values up to kLargestValue there are
+    // billions.
+    if (8 * most <= height - 3)
+      for (int quarter = 0; quarter <= 4 * most; ++quarter) drawLevel(quarter / 4.0, 0.08);
+    drawLevel(1, 0.4);
     for (const int degrees : kLobeAngles)
       for (int y = 0; y < height; ++y) paint(picture, {degrees * picture.width() / 90, top + y}, dvec3(0.08));
   }

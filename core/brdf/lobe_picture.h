@@ -31,7 +31,8 @@ inline constexpr int kLobeAngles[] = {0, 30, 45, 60, 75};
 ///
 /// The strip beneath shows the albedo of each channel over the angle of the view, 0 to 90 degrees from left
 /// to right; where the channels agree the line is white. Levels are a quarter apart from 0 at the bottom, 1
-/// is the brightest; upright lines are at kLobeAngles. The views lean to +x, those of dim lines to +y.
+/// is the brightest, and the only one where a quarter is less than two rows; upright lines are at
+/// kLobeAngles. The views lean to +x, those of dim lines to +y.
 LIMN_API Image lobePicture(const Brdf& brdf, bool isotropic, int discPixels = 160);
 
 }  // namespace limn::brdf

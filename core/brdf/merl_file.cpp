@@ -60,10 +60,6 @@ TabulatedBrdf decodeMerl(std::span<const std::byte> bytes, std::string_view name
   return table;
 }
 
-TabulatedBrdf readMerl(const std::filesystem::path& path) {
-  return decodeMerl(readFile(path, fileSize(kMerlSize)), path.string());
-}
-
 std::vector<std::byte> encodeMerl(const TabulatedBrdf& table) {
   std::vector<std::byte> bytes(fileSize(table.size));
   const Header header{table.size.x, table.size.y, table.size.z};

@@ -1,4 +1,4 @@
-// Declares reading and writing of the files of the MERL BRDF database (Matusik et al. 2003, A Data-Driven
+// Declares decoding and writing of the files of the MERL BRDF database (Matusik et al. 2003, A Data-Driven
 // Reflectance Model): three int32 with the nodes in thetaH, thetaD and phiD, then the red, green and blue
 // plane as doubles in the order of TabulatedBrdf::values, all little-endian. Red times 1/1500, green
 // times 1.15/1500 and blue times 1.66/1500 is f in 1/sr. A negative number says that nothing was measured.
@@ -24,7 +24,6 @@ inline constexpr glm::ivec3 kMerlSize{90, 90, 180};
 /// kLargestValue, and a node that was measured.
 LIMN_API TabulatedBrdf decodeMerl(std::span<const std::byte> bytes, std::string_view name,
                                   const glm::ivec3& size = kMerlSize);
-LIMN_API TabulatedBrdf readMerl(const std::filesystem::path& path);
 
 /// Returns the content of a file with the table's values, whatever its size.
 LIMN_API std::vector<std::byte> encodeMerl(const TabulatedBrdf& table);

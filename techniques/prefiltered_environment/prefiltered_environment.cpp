@@ -11,6 +11,7 @@
 #include "core/gpu_scene/gpu_medium.h"
 #include "core/gpu_scene/gpu_scene.h"
 #include "core/gpu_scene/surface_input.h"
+#include "core/scene/draw_instance.h"
 #include "core/scene/environment_light.h"
 #include "core/shading_maps/shading_maps.h"
 #include "core/technique/technique.h"
@@ -67,7 +68,8 @@ constexpr int kGroupSize = 8;
 constexpr int kFilteredLevels = glsl::environment_levels - 1;  ///< level 0 is the radiance itself
 /// Of maps of irradiance; and the rows of the picture that it is summed over, at least.
 constexpr int kIrradianceSize = 32;
-/// Of that picture, at most: software renderers leave the loops of a thread after 65,535 steps.
+/// Of that picture, at most, and on all renderers, so that they show the same: with its 63 rows at most the
+/// sum takes 64,575 steps, and software renderers leave the loops of a thread after 65,535.
 constexpr int kMostIrradianceColumns = 1024;
 constexpr int kCoarsestSize = 8;  ///< of the chain, at least
 /// Radiance that half floats hold, which end at 65504, after sums of thousands of samples have rounded it up.
@@ -95,7 +97,8 @@ Needs needsOf(const TechniqueInputs& inputs) {
               .grazing = (kinds & kEnteredKinds) != 0};
   // What enters translucent surfaces is asked for without any other.
   if ((kinds & 1u << glsl::model_entry) == 0)
-    needs.ggx = std::ranges::any_of(inputs.scene.materials, [](const scene::Material& m) {
+    needs.ggx = std::ranges::any_of(inputs.pose.instances, [&](const scene::DrawInstance& drawn) {
+      const scene::Material& m = scene::materialOf(inputs.scene, drawn);
       return m.model ? m.model->kind == glsl::model_measured : !m.lambertian() && !m.specularSurface();
     });
   needs.sharp = needs.ggx || needs.power || (kinds & 1u << glsl::model_coated) != 0;

@@ -77,6 +77,21 @@ TEST(LobePicture, GrainHasASecondRowAndBlackNoLobe) {
   for (const float value : black.data()) EXPECT_TRUE(value >= 0 && value <= 1);
 }
 
+// Tables may hold values whose albedo is 1e10 quarters and more: less than two rows apart they would fill the
+// strip, and drawing them would not end.
+TEST(LobePicture, LevelsCloserThanTwoRowsAreNotDrawn) {
+  constexpr int kSide = 40, kMiddle = kSide + 4 + kSide / 2;
+  for (const double albedo : {100.0, 3e10}) {
+    const Image picture = lobePicture(lambert(dvec3(albedo)), true, kSide);
+    for (int x = 1; x < picture.width() / 4; ++x)
+      ASSERT_EQ(picture.at(x, kMiddle, 0), 0) << albedo << " " << x;
+  }
+  const Image few = lobePicture(lambert(dvec3(2)), true, kSide);
+  int levels = 0;
+  for (int y = kSide + 4; y < few.height(); ++y) levels += few.at(1, y, 0) > 0.05f && few.at(1, y, 0) < 0.5f;
+  EXPECT_GE(levels, 7) << "a quarter apart up to 2, of which the uppermost is the line itself";
+}
+
 // The mirror lobe of a metal lies opposite the light, which comes from the left, and from below in the second
 // row.
 TEST(LobePicture, LobesLieOppositeTheLight) {

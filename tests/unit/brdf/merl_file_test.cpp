@@ -7,9 +7,11 @@
 #include <cstring>
 #include <limits>
 #include <tuple>
+#include <variant>
 
 #include "core/base/error.h"
 #include "core/base/file.h"
+#include "core/brdf/measured_file.h"
 #include "tests/unit/brdf/materials.h"
 
 namespace limn::brdf {
@@ -65,14 +67,14 @@ TEST(MerlFile, WhatIsWrittenIsReadToTheBit) {
   TabulatedBrdf table = tabulate(kMerlSize, gold);
   writeMerl(path, table);
   EXPECT_EQ(std::filesystem::file_size(path), 34992012u);
-  EXPECT_EQ(readMerl(path).values, table.values);
+  EXPECT_EQ(std::get<TabulatedBrdf>(readMeasured(path)).values, table.values);
 
-  // A byte too many is refused before it is read, one too few afterwards.
+  // A byte too many is refused, and one too few.
   std::filesystem::resize_file(path, 34992013);
-  EXPECT_THROW(readMerl(path), Error);
+  EXPECT_THROW(readMeasured(path), Error);
   std::filesystem::resize_file(path, 34992011);
-  EXPECT_THROW(readMerl(path), Error);
-  EXPECT_THROW(readMerl(path / "none"), Error);
+  EXPECT_THROW(readMeasured(path), Error);
+  EXPECT_THROW(readMeasured(path / "none"), Error);
 
   table = tabulate(kSmall, gold);
   EXPECT_THROW(writeMerl(path, table), Error);
