@@ -21,6 +21,7 @@ class SubsurfaceHarness : public TwoBodiesTest {
   static constexpr float kMatterIor = 1.3f;
   static constexpr float kExtinction = 40;  ///< per metre; light gets 50 mm in the mean, 4 pixels
   static constexpr float kAbsorption = 0.04f;
+  static inline const std::vector<std::string> kProfileNames{"dipole", "normalised_diffusion"};
 
   /// A floor that absorbs that share of what it does not let through, under light from straight above.
   static scene::Scene floor(float extinction, float absorption) {
@@ -56,6 +57,12 @@ class SubsurfaceHarness : public TwoBodiesTest {
     });
     EXPECT_GT(i, 1500u);
     return largest;
+  }
+  /// A picture of what leaves the bodies of a scene, with the given parameters of the technique.
+  Image below(const scene::Scene& scene, const Choices& values) {
+    return drawn(scene, Term::subsurface,
+                 {technique("hard_shadow_map", {{"shadow_map_size", "2048"}}),
+                  technique("subsurface_scattering", values)});
   }
 };
 

@@ -1,96 +1,20 @@
-// Virtual point lights carry the flux that the scene reflects.
-#include <gmock/gmock.h>
+// Virtual point lights carry the flux that the scene reflects of a light of any kind.
+#include <gtest/gtest.h>
 
+#include <cmath>
 #include <numeric>
+#include <utility>
+#include <vector>
 
-#include "core/indirect/virtual_lights.h"
-#include "core/scene/material_model.h"
 #include "glsl/light/rectangle_light.glsl"
-#include "glsl/materials/model.glsl"
 #include "glsl/numeric/sampling.glsl"
-#include "glsl/surface/brdf.glsl"
-#include "tests/gpu/gl_test.h"
-#include "tests/support/test_scenes.h"
+#include "tests/gpu/virtual_light_harness.h"
 
 namespace limn {
 namespace {
 
 using namespace limn::test;
 using glm::vec3;
-
-constexpr float kPi = glsl::pi;
-
-struct Sampled {
-  std::vector<glsl::VirtualPointLight> lights;
-  vec3 flux{0};       ///< of the lights together
-  vec3 reflected{0};  ///< by the maps
-};
-
-scene::Material lambert(vec3 albedo) {
-  scene::Material m;
-  m.baseColour = glm::vec4(albedo, 1);
-  m.metallic = 0;
-  m.specularFactor = 0;
-  return m;
-}
-
-class VirtualLightTest : public OncePerRenderer<SharedProgramsTest> {
- protected:
-  Sampled sample(const scene::Scene& scene, const scene::Pose& pose, const indirect::VirtualLightDesc& desc) {
-    std::vector<uint32_t> all(pose.lights.size());
-    std::iota(all.begin(), all.end(), 0u);
-    scene::GpuScene gpuScene(device(), scene);
-    gpuScene.update(pose, scene::frameBounds(pose.bounds), {64, 64}, 0);
-    FrameServices services;
-    services.add<shadow::ShadowMapService>(device(), gpuScene);
-    auto& service = services.add<indirect::VirtualLightService>(scene);
-    frame::ResourcePool pool(device());
-    frame::FrameGraph graph;
-    const SceneHandles handles = gpuScene.import(graph);
-    const auto building = services.begin(graph, handles, pose);
-    const indirect::VirtualLights made = service.request(all, desc);
-    EXPECT_EQ(service.request(all, desc).lights, made.lights) << "made once whoever asks";
-    graph.output(made.lights);
-    graph.output(made.reflected);
-    graph.prepare(device(), shaders(), pool);
-    graph.execute();
-    Sampled out;
-    out.lights.resize(static_cast<size_t>(desc.count));
-    graph.buffer(made.lights).read(0, out.lights.data(), out.lights.size() * sizeof(out.lights[0]));
-    std::vector<glm::vec4> layers(static_cast<size_t>(made.maps.layers));
-    graph.buffer(made.reflected).read(0, layers.data(), layers.size() * sizeof(layers[0]));
-    for (const glm::vec4& layer : layers) out.reflected += vec3(layer);
-    for (const glsl::VirtualPointLight& light : out.lights) {
-      out.flux += vec3(light.flux);
-      EXPECT_TRUE(glm::all(glm::greaterThanEqual(vec3(light.flux), vec3(0))));
-      EXPECT_NEAR(glm::length(light.normal), 1, 1e-4f);
-      EXPECT_FALSE(glm::any(glm::isnan(light.position)));
-    }
-    gpuScene.forget();
-    return out;
-  }
-
-  static void expectFlux(const Sampled& s, vec3 expected, float tolerance) {
-    for (int c = 0; c < 3; ++c) {
-      EXPECT_NEAR(s.reflected[c], expected[c], tolerance * expected[c]) << "maps, channel " << c;
-      EXPECT_NEAR(s.flux[c], s.reflected[c], 1e-4f * s.reflected[c]) << "virtual lights, channel " << c;
-    }
-  }
-
-  /// A box of side 2 that faces inwards.
-  static void addBox(scene::Scene& scene, scene::Pose& pose, int material) {
-    const int mesh = addMesh(scene, floorPrimitive(1, material));
-    for (const auto& [angle, axis] :
-         {std::pair(0.f, vec3(1, 0, 0)), std::pair(kPi, vec3(1, 0, 0)), std::pair(0.5f * kPi, vec3(1, 0, 0)),
-          std::pair(-0.5f * kPi, vec3(1, 0, 0)), std::pair(0.5f * kPi, vec3(0, 0, 1)),
-          std::pair(-0.5f * kPi, vec3(0, 0, 1))}) {
-      const glm::mat4 turn = glm::rotate(glm::mat4(1), angle, axis);
-      addInstance(scene, pose, mesh, turn * glm::translate(glm::mat4(1), {0, -1, 0}));
-    }
-  }
-};
-
-constexpr vec3 colour(0.2f, 0.5f, 0.8f);
 
 TEST_F(VirtualLightTest, SpotOverAPlane) {
   for (const float scale : {1.f, 1e-4f, 1e4f}) {
@@ -142,17 +66,6 @@ TEST_F(VirtualLightTest, StandForTheSurfacesThatTheLightSees) {
   for (const int lightSamples : {1, 16}) EXPECT_NEAR(area(lightSamples), 6 * 4, 0.02 * 6 * 4) << lightSamples;
 }
 
-TEST_F(VirtualLightTest, LightsThatSeeOnlyBackFacesReflectNothing) {
-  scene::Scene scene;
-  scene::Pose pose;
-  addMesh(scene, spherePrimitive(1, addMaterial(scene, lambert(colour))));
-  addInstance(scene, pose, 0);
-  addLight(pose, pointLight({0, 0, 0}));
-  EXPECT_EQ(sample(scene, pose, {.count = 100}).flux, vec3(0));
-  scene.materials[0].doubleSided = true;
-  expectFlux(sample(scene, pose, {.count = 100}), colour * 4.f * kPi, 0.01f);
-}
-
 TEST_F(VirtualLightTest, ParallelLightOnAPlane) {
   scene::Scene scene;
   addMesh(scene, floorPrimitive(2, addMaterial(scene, lambert(colour))));
@@ -193,43 +106,6 @@ TEST_F(VirtualLightTest, ADistantRectangleIsNoDirection) {
   addLight(pose, light);
   const float given = 6 / kPi * std::sqrt(0.5f) * std::atan(std::sqrt(0.5f));
   expectFlux(sample(scene, pose, {.count = 500}), colour * (16 * given), 0.01f);
-}
-
-/// Light of a narrow spot is as long on its way as the spot hangs high, to 0.13 %: T = exp(-sigma h) in each
-/// channel. Nothing but the medium differs, so that texels and their rounding are the same.
-TEST_F(VirtualLightTest, TheMediumTakesOfTheLightOnItsWay) {
-  scene::Scene scene;
-  addMesh(scene, floorPrimitive(2, addMaterial(scene, lambert(colour))));
-  scene::Pose pose;
-  addInstance(scene, pose, 0);
-  addLight(pose, spotLight({0, 1, 0}, {0, -1, 0}, 0.05f));
-  const vec3 clear = sample(scene, pose, {.count = 64}).reflected;
-  scene.medium.sigmaA = {0.7f, 0.2f, 0};
-  scene.medium.sigmaS = {0.3f, 0, 0};
-  for (const int sets : {1, 4}) {
-    const Sampled s = sample(scene, pose, {.count = 64, .sets = sets});
-    expectFlux(s, clear * vec3(std::exp(-1.f), std::exp(-0.2f), 1), 0.005f);
-  }
-}
-
-/// A floor that is black around a small square in its middle, above which the medium's ball, the floor's
-/// bounding sphere, reaches up by its radius r: parallel light is taken from there on. The square lies 0.01 m
-/// above the ball's plane and is 0.14 m wide to its corners: of sigma = 0.5 that is 0.4 %.
-TEST_F(VirtualLightTest, ParallelLightIsTakenFromWhereItEntersTheMedium) {
-  scene::Scene scene;
-  addMesh(scene, floorPrimitive(2, addMaterial(scene, lambert(vec3(0)))));
-  scene::Pose pose;
-  addInstance(scene, pose, 0);
-  addInstance(scene, pose, addMesh(scene, floorPrimitive(0.1f, addMaterial(scene, lambert(colour)))),
-              at(0, 0.01f, 0));
-  addLight(pose, directionalLight({0, -1, 0}, 0));
-  const vec3 clear = sample(scene, pose, {.count = 64}).reflected;
-  ASSERT_GT(clear.x, 0);
-  scene.medium.sigmaA = {0.5f, 0.25f, 0};
-  const float r = pose.bounds.radius();
-  const vec3 expected = clear * vec3(std::exp(-0.5f * r), std::exp(-0.25f * r), 1);
-  const vec3 found = sample(scene, pose, {.count = 64}).reflected;
-  for (int c = 0; c < 3; ++c) EXPECT_NEAR(found[c], expected[c], 0.01f * expected[c]) << c;
 }
 
 TEST_F(VirtualLightTest, RectanglesOneAndTwoSided) {
@@ -323,101 +199,6 @@ TEST_F(VirtualLightTest, PointsOfOneLightAddLittleNoise) {
       EXPECT_LT(error(count, lightSamples), 1.4 * one)
           << count << " virtual lights, " << lightSamples << " points";
   }
-}
-
-TEST_F(VirtualLightTest, SeveralLightsShareThemByFlux) {
-  scene::Scene scene;
-  scene::Pose pose;
-  addBox(scene, pose, addMaterial(scene, lambert(colour)));
-  addLight(pose, pointLight({0.3f, -0.2f, 0.5f}));
-  glsl::Light strong = spotLight({0, 0.5f, 0}, {0, -1, 0}, 0.5f);
-  strong.emission = glm::vec3(0, 100, 0);
-  addLight(pose, strong);
-  glsl::Light dark = pointLight({0, 0, 0});
-  dark.emission = glm::vec3(0);
-  addLight(pose, dark);
-  const float solid = 2 * kPi * (1 - strong.cos_inner + (strong.cos_inner - strong.cos_outer) / 3);
-  const vec3 fromStrong = colour * vec3(0, 100, 0) * solid, fromPoint = colour * 4.f * kPi;
-  const Sampled s = sample(scene, pose, {.count = 900});
-  expectFlux(s, fromPoint + fromStrong, 0.01f);
-  int green = 0;
-  for (const glsl::VirtualPointLight& v : s.lights) green += v.flux.x == 0 && v.flux.y >= 0;
-  const float share = (fromStrong.y) / (fromStrong.y + fromPoint.x + fromPoint.y + fromPoint.z);
-  EXPECT_NEAR(static_cast<float>(green) / 900, share, 0.03f);
-  expectFlux(sample(scene, pose, {.count = 2}), fromPoint + fromStrong, 0.01f);
-}
-
-/// Half of a floor reflects a channel whose mean over the map is below the least float where that of the one
-/// sample, if it falls on that half, is not.
-TEST_F(VirtualLightTest, ChannelsTooWeakForASumAreLost) {
-  for (const float red : {-0.1f, 0.1f}) {
-    scene::Scene scene;
-    scene::Pose pose;
-    addMesh(scene, floorPrimitive(0.1f, addMaterial(scene, lambert({1, 1, 0}))));
-    addMesh(scene, floorPrimitive(0.1f, addMaterial(scene, lambert({0, 1, 0}))));
-    addInstance(scene, pose, 0, at(red, 0, 0));
-    addInstance(scene, pose, 1, at(-red, 0, 0));
-    glsl::Light light = directionalLight({0, -1, 0}, 0);
-    for (float weak = 1e-36f; weak > 2e-38f; weak *= 0.7f) {
-      light.emission = vec3(weak, 1, 0);
-      pose.lights.clear();
-      pose.lightNames.clear();
-      addLight(pose, light);
-      EXPECT_GT(sample(scene, pose, {.count = 1, .mapSize = 16}).flux.y, 0) << weak;
-    }
-  }
-}
-
-TEST_F(VirtualLightTest, NothingToLightIsHarmless) {
-  scene::Scene scene;
-  scene::Pose pose;
-  addMesh(scene, floorPrimitive(1, addMaterial(scene, lambert(colour))));
-  addInstance(scene, pose, 0);
-  addLight(pose, spotLight({0, 2, 0}, {0, 1, 0}, 0.5f));
-  EXPECT_EQ(sample(scene, pose, {.count = 64}).flux, vec3(0));
-}
-
-/// Fresnel's layer takes its part: the diffuse reflectance of the BRDF itself, integrated.
-TEST_F(VirtualLightTest, AlbedoIsTheDiffusePartOfTheBrdf) {
-  scene::Scene scene;
-  scene::Material material = lambert(colour);
-  material.specularFactor = 1;
-  material.metallic = 0.25f;
-  material.roughness = 0.4f;
-  addMesh(scene, floorPrimitive(2, addMaterial(scene, material)));
-  scene::Pose pose;
-  addInstance(scene, pose, 0);
-  const vec3 towards = glm::normalize(vec3(-0.8f, 1, 0.3f));
-  addLight(pose, directionalLight(-towards, 0));
-  const glsl::SurfaceBrdf s = glsl::surface_brdf(colour, 0.25f, 0.4f, 1, vec3(1), 1.5f);
-  double weight = 0;
-  constexpr int side = 300;
-  const vec3 up(0, 0, 1), l(std::sqrt(1 - towards.y * towards.y), 0, towards.y);
-  for (int i = 0; i < side * side; ++i) {
-    const vec3 v = glsl::sample_cosine({(i % side + 0.5f) / side, (i / side + 0.5f) / side});
-    weight += glsl::brdf_diffuse_weight(s, glsl::half_vector(up, v, l).v_dot_h);
-  }
-  weight /= side * side;
-  expectFlux(sample(scene, pose, {.count = 128}), s.diffuse * 16.f * towards.y * static_cast<float>(weight),
-             0.01f);
-}
-
-/// Vertices have colours for metallic-roughness; a model's are its own.
-TEST_F(VirtualLightTest, AModelReflectsItsAlbedoWhateverColoursVerticesHave) {
-  glsl::MaterialModel matte{};
-  matte.kind = glsl::model_phong;
-  matte.exponent = 1;
-  matte.kd = colour;
-  scene::Scene scene;
-  scene::Material material = lambert(vec3(1));
-  scene::setModel(material, matte);
-  scene::Primitive floor = floorPrimitive(2, addMaterial(scene, material));
-  floor.colours.assign(floor.positions.size(), glm::vec4(0.1f, 0.2f, 0.3f, 1));
-  addMesh(scene, floor);
-  scene::Pose pose;
-  addInstance(scene, pose, 0);
-  addLight(pose, directionalLight({0, -1, 0}, 0));
-  expectFlux(sample(scene, pose, {.count = 128}), colour * 16.f, 0.01f);
 }
 
 }  // namespace

@@ -1,0 +1,253 @@
+// Scenes that the rendering thread opens and files that it writes, step by step and without a window.
+#include <gtest/gtest.h>
+
+#include <chrono>
+#include <filesystem>
+#include <string>
+#include <thread>
+#include <vector>
+
+#include "apps/view/picture_studio.h"
+#include "core/base/file.h"
+#include "core/context/context.h"
+#include "core/gpu/device.h"
+#include "tests/cli/process.h"
+#include "tests/support/gltf_builder.h"
+#include "tests/support/paths.h"
+#include "tests/view/lamp_file.h"
+
+namespace limn::app {
+namespace {
+
+using test::GltfBuilder;
+
+/// What the scene was read from is not lost to a picture, as it is not to limn render.
+TEST(PictureStudio, PicturesDoNotReplaceTheEnvironmentThatLightsThem) {
+  const test::TemporaryFolder folder;
+  writeFile(folder / "lamp.glb", lampFile());
+  const std::filesystem::path map = folder / "sky.exr";
+  std::filesystem::copy_file(std::string(test::kBinaryDir) + "/assets/environments/sky.exr", map);
+  const auto bytes = std::filesystem::file_size(map);
+  const auto context = Context::create({});
+  gpu::Device device(*context);
+  PictureFacts facts;
+  PictureStudio studio(
+      device, {}, {}, [&](const PictureFacts& newest) { facts = newest; }, [] {});
+  PictureOrder order;
+  order.scene.scene = (folder / "lamp.glb").string();
+  order.scene.environment = map.string();
+  studio.open({.scene = order.scene});
+  ASSERT_TRUE(facts.scene) << facts.message;
+  order.of = facts.scene;
+  order.size = {16, 12};
+  const auto save = [&](const char* name) {
+    studio.save({.picture = order, .file = folder / name, .command = {}, .frames = {}});
+  };
+  save("sky.exr");
+  EXPECT_TRUE(facts.problem);
+  EXPECT_EQ(std::filesystem::file_size(map), bytes);
+  save("picture.exr");
+  EXPECT_FALSE(facts.problem) << facts.message;
+}
+
+/// A file that nobody should take for a result is not written, as by the command that it would name.
+TEST(PictureStudio, PicturesThatAreNotFiniteAreNotSaved) {
+  const test::TemporaryFolder folder;
+  GltfBuilder b;
+  b.triangle();
+  // So close to the surface this is more than a float holds.
+  b.root["nodes"][0]["scale"] = {1e-6, 1e-6, 1e-6};
+  b.light({{"type", "point"}, {"intensity", 1e30}}, {{"translation", {3e-7, 3e-7, 1e-7}}});
+  writeFile(folder / "blinding.glb", b.glb());
+  const auto context = Context::create({});
+  gpu::Device device(*context);
+  PictureFacts facts;
+  PictureStudio studio(
+      device, {}, {}, [&](const PictureFacts& newest) { facts = newest; }, [] {});
+  PictureOrder order;
+  order.scene.scene = (folder / "blinding.glb").string();
+  order.scene.term = "direct";
+  studio.open({.scene = order.scene});
+  ASSERT_TRUE(facts.scene) << facts.message;
+  order.of = facts.scene;
+  order.size = {16, 16};
+  for (const char* name : {"a.png", "a.exr"}) {
+    studio.save({.picture = order, .file = folder / name, .command = {}, .frames = {}});
+    EXPECT_TRUE(facts.problem) << name;
+    EXPECT_NE(facts.message.find("pixels of term direct by no technique are not finite"), std::string::npos)
+        << facts.message;
+    EXPECT_FALSE(std::filesystem::exists(folder / name));
+  }
+  EXPECT_EQ(facts.picture.problem, "") << "it is shown all the same";
+}
+
+/// ImGui ends the program at a slider that goes as far as a float does.
+TEST(PictureStudio, AnimationsWithoutAnEndInSightAreEndless) {
+  const test::TemporaryFolder folder;
+  GltfBuilder b;
+  const int node = b.triangle();
+  const int places = b.vec3({{0, 0, 0}, {1, 0, 0}});
+  for (const float end : {3e38f, 2.f}) {
+    const int times = b.floats({0, end});
+    b.append("animations",
+             {{"samplers", GltfBuilder::json::array({{{"input", times}, {"output", places}}})},
+              {"channels", GltfBuilder::json::array(
+                               {{{"sampler", 0}, {"target", {{"node", node}, {"path", "translation"}}}}})}});
+  }
+  writeFile(folder / "long.glb", b.glb());
+  const auto context = Context::create({});
+  gpu::Device device(*context);
+  PictureFacts facts;
+  PictureStudio studio(
+      device, {}, {}, [&](const PictureFacts& newest) { facts = newest; }, [] {});
+  SceneQuestion scene;
+  scene.scene = (folder / "long.glb").string();
+  const auto secondsOf = [&](const char* animation) {
+    scene.animation = animation;
+    studio.open({.scene = scene});
+    return facts.scene ? facts.scene->seconds : -1;
+  };
+  EXPECT_EQ(secondsOf("#0"), 0) << facts.message;
+  EXPECT_TRUE(facts.scene->animated);
+  EXPECT_EQ(secondsOf("#1"), 2) << facts.message;
+}
+
+/// From then on, not from its first picture on, whose shaders may take seconds: a light of the scene before
+/// that is changed meanwhile would be one that the scene does not have.
+TEST(PictureStudio, LightsAreThoseOfTheSceneThatWasOpened) {
+  const test::TemporaryFolder folder;
+  const auto context = Context::create({});
+  gpu::Device device(*context);
+  PictureFacts facts;
+  PictureStudio studio(
+      device, {}, {}, [&](const PictureFacts& newest) { facts = newest; }, [] {});
+  for (const char* name : {"lamp", "panel"}) {
+    SCOPED_TRACE(name);
+    PictureOrder order;
+    order.scene.scene = (folder / (std::string(name) + ".glb")).string();
+    writeFile(order.scene.scene, lampFile(name));
+    studio.open({.scene = order.scene});
+    ASSERT_EQ(facts.lights.size(), 1u) << facts.message;
+    EXPECT_EQ(facts.lights[0].name, name);
+    EXPECT_TRUE(facts.lights[0].editable);
+    order.of = facts.scene;
+    order.size = {16, 12};
+    studio.step(order, [] { return false; });
+    EXPECT_EQ(facts.picture.problem, "");
+  }
+}
+
+/// What was wrong with a shader is said no longer when another scene is opened, whose programs are new.
+TEST(PictureStudio, ProblemsOfShadersEndWithTheScene) {
+  const test::TemporaryFolder folder;
+  writeFile(folder / "lamp.glb", lampFile());
+  const std::filesystem::path inside = "glsl/deferred/tone_map.comp.glsl";
+  std::filesystem::create_directories((folder.path() / inside).parent_path());
+  const std::string good = readTextFile(std::filesystem::path(test::kSourceDir) / inside);
+  writeTextFile(folder.path() / inside, good);
+  const auto context = Context::create({});
+  gpu::Device device(*context);
+  PictureFacts facts;
+  PictureStudio studio(
+      device, folder.path(), {}, [&](const PictureFacts& newest) { facts = newest; }, [] {});
+  PictureOrder order;
+  order.scene.scene = (folder / "lamp.glb").string();
+  order.size = {16, 12};
+  const auto step = [&] { studio.step(order, [] { return false; }); };
+  const auto open = [&] {
+    studio.open({.scene = order.scene});
+    order.of = facts.scene;
+    step();
+  };
+  open();
+  EXPECT_EQ(facts.picture.problem, "");
+  writeTextFile(folder.path() / inside, good + "not a shader");
+  for (int i = 0; i < 200 && facts.shaderProblem.empty(); ++i) {
+    std::this_thread::sleep_for(std::chrono::milliseconds(50));
+    step();
+  }
+  ASSERT_NE(facts.shaderProblem, "");
+  writeTextFile(folder.path() / inside, good);
+  open();
+  EXPECT_EQ(facts.shaderProblem, "");
+  EXPECT_EQ(facts.picture.problem, "");
+}
+
+/// Whoever operates the window by a script reads what happened line by line.
+TEST(PictureStudio, SaysInOneLineWhatFailed) {
+  const test::TemporaryFolder folder;
+  const auto context = Context::create({});
+  gpu::Device device(*context);
+  PictureFacts facts;
+  PictureStudio studio(
+      device, {}, {}, [&](const PictureFacts& newest) { facts = newest; }, [] {});
+  SceneQuestion scene;
+  scene.scene = (folder / "two\nlines.glb").string();
+  studio.open({.scene = scene});
+  EXPECT_TRUE(facts.problem);
+  EXPECT_NE(facts.message.find("two lines.glb"), std::string::npos) << facts.message;
+}
+
+/// What was asked for while an environment that cannot be read was still being opened.
+TEST(PictureStudio, ARefusedOrderTakesNothingElseWithIt) {
+  const test::TemporaryFolder folder;
+  writeFile(folder / "lamp.glb", lampFile());
+  const auto context = Context::create({});
+  gpu::Device device(*context);
+  PictureFacts facts;
+  PictureStudio studio(
+      device, {}, {}, [&](const PictureFacts& newest) { facts = newest; }, [] {});
+  SceneQuestion scene;
+  scene.scene = (folder / "lamp.glb").string();
+  studio.open({.scene = scene, .file = 1});
+  ASSERT_TRUE(facts.scene) << facts.message;
+  SceneQuestion lit = scene;
+  lit.environment = (folder / "missing.hdr").string();
+  studio.open({.scene = lit, .file = 1});
+  EXPECT_TRUE(facts.problem);
+  SceneQuestion floored = lit;
+  floored.floor = "on";
+  studio.open({.scene = floored, .file = 1, .after = lit});
+  EXPECT_EQ(facts.scene->options.floor, "on");
+  EXPECT_EQ(facts.scene->options.environment, "");
+  EXPECT_TRUE(facts.problem) << "why there is no environment is still said";
+  EXPECT_EQ(facts.opened, 3u);
+  SceneQuestion scattering = floored;  // which starts from what was asked, not from what was opened
+  scattering.sigmaS = "0.1";
+  studio.open({.scene = scattering, .file = 1, .after = floored});
+  EXPECT_EQ(facts.scene->options.floor, "on");
+  EXPECT_EQ(facts.scene->options.sigmaS, "0.1");
+  studio.open({.scene = floored, .file = 1});
+  EXPECT_EQ(facts.scene->options.sigmaS, "0.1") << "nothing is left of an order that starts from no other";
+}
+
+/// What can be ended is a sequence that is being saved, not a scene that is being opened.
+TEST(PictureStudio, SaysWhatCanBeEnded) {
+  const test::TemporaryFolder folder;
+  writeFile(folder / "lamp.glb", lampFile());
+  const auto context = Context::create({});
+  gpu::Device device(*context);
+  PictureFacts facts;
+  std::vector<std::string> endable, jobs;
+  PictureStudio studio(
+      device, {}, {},
+      [&](const PictureFacts& newest) {
+        facts = newest;
+        if (!facts.job.empty()) (facts.saving ? endable : jobs).push_back(facts.job);
+      },
+      [] {});
+  PictureOrder order;
+  order.scene.scene = (folder / "lamp.glb").string();
+  studio.open({.scene = order.scene});
+  order.of = facts.scene;
+  order.size = {16, 12};
+  studio.save({.picture = order, .file = folder / "a.png", .command = {}, .frames = FrameRange{0, 1}});
+  while (studio.saving()) studio.saveNext();
+  EXPECT_EQ(jobs, std::vector<std::string>{"opening lamp.glb"});
+  EXPECT_EQ(endable, std::vector<std::string>{"frame 1 of 2"});
+  EXPECT_FALSE(facts.saving);
+  EXPECT_FALSE(facts.problem) << facts.message;
+}
+
+}  // namespace
+}  // namespace limn::app
