@@ -18,7 +18,8 @@ int main(int argc, char** argv) {
       {"Four curves", "hard_shadow_map,factored_brdf", "factored_brdf.fit=dfg",
        "A product of functions of n.h, h.l, n.l and n.v, fitted to the values: 1 kB a material."},
       {"Homomorphic, over directions", "hard_shadow_map,factored_brdf", "factored_brdf.fit=pqp_disc",
-       "p(l) q(h) p(v), the only fit beside svd that follows the grooves of teapot_groove."},
+       "p(l) q(h) p(v), which follows the grooves of teapot_groove, as dfg_disc and svd do and no other "
+       "fit."},
       {"Singular values", "hard_shadow_map,factored_brdf", "factored_brdf.fit=svd factored_brdf.terms=4",
        "Four products of functions of half vector and difference: highlights are too wide."},
       {"Without shadows", "", "", "What the lights reflect where nothing hides them."},

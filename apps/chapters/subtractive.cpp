@@ -17,11 +17,12 @@ int main(int argc, char** argv) {
        "subtractive_shadows.combine=subtract subtractive_shadows.demodulate=false "
        "subtractive_shadows.unshadowed=prefiltered subtractive_shadows.show=hidden",
        "Pixels take it from the blocks around them whose surfaces are near and alike: it ends at edges."},
-      {"U - S', as published: 1/16", "subtractive_shadows",
+      {"U - S': 1/16", "subtractive_shadows",
        "subtractive_shadows.combine=subtract subtractive_shadows.demodulate=false "
        "subtractive_shadows.unshadowed=prefiltered",
-       "S holds the surface's colours: the table's and the floor's are blurred. Play the animation: every "
-       "three seconds another of four materials is in front."},
+       "As published, but with filtered maps for U: S holds the surface's colours, so that the table's and "
+       "the floor's are blurred. Play the animation: every three seconds another of four materials is in "
+       "front."},
       {"A: what is seen of 25 samples", "subtractive_shadows",
        "subtractive_shadows.combine=add subtractive_shadows.block=1",
        "Added up, as the baseline does: highlights are single dots, and shadows have 25 edges."},

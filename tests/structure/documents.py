@@ -1,9 +1,12 @@
 """What documents point to is there: documents.py LIMN SOURCE.
 
-Links within the repository lead to a file, and to a heading or a named place in it; files in backticks exist where the first part of
-their path is a folder of the repository's; and each `limn COMMAND` takes the options that stand behind it.
+Links within the repository lead to a file, and to a heading or a named place in it; files in backticks exist where the first part
+of their path is a folder of the repository's; each `limn COMMAND` takes the options that stand behind it; and settings like
+TECHNIQUE.PARAMETER=VALUE name parameters that there are, in the chapters' programs and in scripts as well (not in results, which
+are of their day).
 """
 import functools
+import json
 import pathlib
 import re
 import subprocess
@@ -14,6 +17,7 @@ FOLDERS = ("apps", "assets", "benchmarks", "cmake", "core", "docs", "glsl", "scr
 PATH = re.compile(r"`((?:" + "|".join(FOLDERS) + r")/[\w./-]*\w\.(?:cpp|frag|glsl|h|js|md|py|toml|txt|vert))`")
 CALL = re.compile(r"\blimn ([a-z][a-z-]*(?: (?:info|simulate|fit)\b)?)((?:\\\n|[^\n`|#]|(?<!\s)#)*)")
 OPTION = re.compile(r"(?<![\w-])--[a-z][a-z-]*")
+SETTING = re.compile(r"\b([a-z]\w*)\.([a-z]\w*)=")
 problems = []
 
 
@@ -67,6 +71,14 @@ def check_calls(document, text):
                 problems.append(f"{document}: limn {command} has no option {option}")
 
 
+def check_settings(file, text):
+    problems.extend(f"{file}: {technique} has no parameter {name}" for technique, name in SETTING.findall(text)
+                    if technique in parameters and name not in parameters[technique])
+
+
+listed = subprocess.run([limn, "list", "--json"], check=True, capture_output=True, text=True).stdout
+parameters = {technique["name"]: {parameter["name"] for parameter in technique["parameters"]}
+              for technique in json.loads(listed)["techniques"]}
 documents = [path for path in source.glob("*.md") if path.name != "CHANGELOG.md"]
 documents += [path for folder in FOLDERS for path in sorted((source / folder).rglob("*.md"))]
 for document in documents:
@@ -74,5 +86,10 @@ for document in documents:
     check_links(document, text)
     check_paths(document, text)
     check_calls(document, text)
+    if not document.is_relative_to(source / "docs/results"):
+        check_settings(document, text)
+for file in [*sorted((source / "apps/chapters").glob("*.cpp")), *sorted((source / "scripts").glob("*"))]:
+    if file.is_file():
+        check_settings(file, file.read_text(encoding="utf-8"))
 print("\n".join(problems))
-sys.exit(1 if problems or not documents or not options("render") else 0)
+sys.exit(1 if problems or not documents or not parameters or not options("render") else 0)
