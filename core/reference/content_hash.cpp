@@ -146,6 +146,11 @@ void addMends(Hasher& h, const Request& r) {
   if (seen && bodies) h.add(squaredIndices);
   constexpr uint32_t hiddenAsSeen = 0x5eeb;  // earlier results lack caustics behind back faces
   if (specular && (r.term == Term::final || r.term == Term::caustic)) h.add(hiddenAsSeen);
+  constexpr uint32_t thicknessOfMeshes = 0x7c1c;  // earlier results have thickness in metres of the world
+  const bool absorbing = std::ranges::any_of(r.scene.materials, [](const scene::Material& m) {
+    return m.transmission > 0 && m.thickness > 0 && m.attenuationDistance > 0;
+  });
+  if (r.interfaces == 0 && r.term == Term::final && absorbing) h.add(thicknessOfMeshes);
   constexpr uint32_t airlightVersion = 0xa162;
   const bool air = r.term == Term::final || r.term == Term::media;
   if (air && r.scene.medium.sigmaS != glm::vec3(0) && r.scene.environment) h.add(airlightVersion);

@@ -158,7 +158,7 @@ void develop(const Integrator& integrator, const View& view, const Request& requ
       else if (request.interfaces != 0)
         seen = surface.values.emission;
       else
-        seen = cameraRadiance(surface, *view.rays.draws()[surface.draw].material, environment);
+        seen = cameraRadiance(surface, view.rays.draws()[surface.draw], environment);
       mean.value += glm::dvec3(seen * view.transmittance(pixel));
     }
     writeColour(out, mean.value, glm::dot(mean.deviation, mean.deviation) / 3);

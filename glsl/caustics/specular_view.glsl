@@ -15,9 +15,13 @@ struct SpecularView {
   vec3 transmitted;
 };
 
+// By how much an instance scales lengths, in the mean over directions: glTF gives the thickness of a body in the space of its mesh
+// (KHR_materials_volume).
+LIMN_FN float body_scale(mat3 to_world) { return pow(abs(determinant(to_world)), 1.0f / 3.0f); }
+
 // n: shading normal; v: unit, to the viewer; base_colour and transmission as glTF has them (KHR_materials_transmission:
 // what passes is tinted by the base colour). thickness 0: a thin wall, which does not bend; else the surface of a body
-// of that index of refraction, absorbing over its thickness (metres; KHR_materials_volume; attenuation_distance 0:
+// of that index of refraction, absorbing over its thickness (metres in the world; KHR_materials_volume; attenuation_distance 0:
 // clear).
 LIMN_FN SpecularView specular_view(SurfaceBrdf s, vec3 base_colour, float metallic, float transmission, float ior,
                                    float thickness, vec3 attenuation_colour, float attenuation_distance, vec3 n,

@@ -28,12 +28,13 @@ vec3 environment_radiance(vec3 direction) {
 vec3 seen_in_surface(ivec2 pixel) {
   GBufferSurface s = pixel_surface(pixel);
   if ((s.flags & gbuffer_flag_specular) == 0u) return vec3(0.0);
-  Material material = materials[instances[pixel_instance(pixel)].material];
+  Instance instance = instances[pixel_instance(pixel)];
+  Material material = materials[instance.material];
   SurfaceBrdf surface =
       surface_brdf(s.base_colour, s.metallic, s.roughness, s.specular_factor, s.specular_colour, s.ior);
   SpecularView seen = specular_view(surface, s.base_colour, s.metallic, material.transmission, s.ior,
-                                    material.thickness, material.attenuation, material.attenuation_distance,
-                                    s.normal, -normalize(pixel_ray(pixel)));
+                                    material.thickness * body_scale(mat3(instance.object_to_world)), material.attenuation,
+                                    material.attenuation_distance, s.normal, -normalize(pixel_ray(pixel)));
   return seen.reflected * environment_radiance(seen.reflection) +
          seen.transmitted * environment_radiance(seen.refraction);
 }

@@ -383,6 +383,27 @@ TEST_F(ComparabilityTest, SpecularSurfacesShowTheSameEnvironment) {
   }
 }
 
+/// KHR_materials_volume: a body whose node makes it four times as large is four times as thick.
+TEST_F(ComparabilityTest, ThicknessIsInTheSpaceOfTheMesh) {
+  const auto seen = [&](float scale) {
+    scene::Scene scene;
+    scene.environment = sky();
+    scene::Material glass;
+    glass.roughness = 0;
+    glass.metallic = 0;
+    glass.transmission = 1;
+    glass.thickness = 1 / scale;
+    glass.attenuationDistance = 1;
+    glass.attenuationColour = {0.9f, 0.3f, 0.1f};
+    const int ball = test::addMesh(scene, test::spherePrimitive(1 / scale, test::addMaterial(scene, glass)));
+    addNode(scene, ball, {.scale = glm::vec3(scale)});
+    return both(scene, scene::lookAt({0.5f, 1, 3}, {0, 0, 0}, 0.8f), {48, 36}, Term::final, 2);
+  };
+  const test::Pair whole = seen(1), scaled = seen(4);
+  EXPECT_LT(lightDifference(scaled, true), 0.01);
+  EXPECT_LT(lightDifference({scaled.image, whole.reference}, true), 0.01);
+}
+
 /// Models that are not limn's: LIMN_MODELS names a folder of .glb files.
 TEST_F(ComparabilityTest, SeesTheSameSurfacesInOutsideModels) {
   const char* folder = std::getenv("LIMN_MODELS");
