@@ -9,10 +9,9 @@
 #include <unistd.h>
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <fstream>
-#include <iterator>
-#include <utility>
 
 #include "apps/view/display_image.h"
 #include "apps/view/pace.h"
@@ -301,9 +300,10 @@ PictureOrder ViewerWindow::order() const {
 /// typed into see Return, however long the frame took in which it was tapped.
 void ViewerWindow::beginFrame() {
   ImGuiIO& io = ImGui::GetIO();
-  const std::vector<bool> down(std::begin(io.KeysDown), std::end(io.KeysDown));
-  for (const int key : std::exchange(tapped_, {}))
+  const auto down = std::to_array(io.KeysDown);
+  for (const int key : tapped_)
     if (key != GLFW_KEY_UNKNOWN) io.KeysDown[key] = true;
+  tapped_.clear();
   ImGui::NewFrame();
   std::ranges::copy(down, io.KeysDown);
 }

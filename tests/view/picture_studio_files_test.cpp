@@ -9,12 +9,9 @@
 
 #include "apps/view/picture_studio.h"
 #include "core/base/file.h"
-#include "core/context/context.h"
-#include "core/gpu/device.h"
-#include "tests/cli/process.h"
 #include "tests/support/gltf_builder.h"
 #include "tests/support/paths.h"
-#include "tests/view/lamp_file.h"
+#include "tests/view/picture_studio_harness.h"
 
 namespace limn::app {
 namespace {
@@ -22,24 +19,12 @@ namespace {
 using test::GltfBuilder;
 
 /// What the scene was read from is not lost to a picture, as it is not to limn render.
-TEST(PictureStudio, PicturesDoNotReplaceTheEnvironmentThatLightsThem) {
-  const test::TemporaryFolder folder;
-  writeFile(folder / "lamp.glb", lampFile());
+TEST_F(PictureStudioTest, PicturesDoNotReplaceTheEnvironmentThatLightsThem) {
   const std::filesystem::path map = folder / "sky.exr";
   std::filesystem::copy_file(std::string(test::kBinaryDir) + "/assets/environments/sky.exr", map);
   const auto bytes = std::filesystem::file_size(map);
-  const auto context = Context::create({});
-  gpu::Device device(*context);
-  PictureFacts facts;
-  PictureStudio studio(
-      device, {}, {}, [&](const PictureFacts& newest) { facts = newest; }, [] {});
-  PictureOrder order;
-  order.scene.scene = (folder / "lamp.glb").string();
   order.scene.environment = map.string();
-  studio.open({.scene = order.scene});
-  ASSERT_TRUE(facts.scene) << facts.message;
-  order.of = facts.scene;
-  order.size = {16, 12};
+  open(lampFile());
   const auto save = [&](const char* name) {
     studio.save({.picture = order, .file = folder / name, .command = {}, .frames = {}});
   };
@@ -51,26 +36,15 @@ TEST(PictureStudio, PicturesDoNotReplaceTheEnvironmentThatLightsThem) {
 }
 
 /// A file that nobody should take for a result is not written, as by the command that it would name.
-TEST(PictureStudio, PicturesThatAreNotFiniteAreNotSaved) {
-  const test::TemporaryFolder folder;
+TEST_F(PictureStudioTest, PicturesThatAreNotFiniteAreNotSaved) {
   GltfBuilder b;
   b.triangle();
   // So close to the surface this is more than a float holds.
   b.root["nodes"][0]["scale"] = {1e-6, 1e-6, 1e-6};
   b.light({{"type", "point"}, {"intensity", 1e30}}, {{"translation", {3e-7, 3e-7, 1e-7}}});
-  writeFile(folder / "blinding.glb", b.glb());
-  const auto context = Context::create({});
-  gpu::Device device(*context);
-  PictureFacts facts;
-  PictureStudio studio(
-      device, {}, {}, [&](const PictureFacts& newest) { facts = newest; }, [] {});
-  PictureOrder order;
-  order.scene.scene = (folder / "blinding.glb").string();
   order.scene.term = "direct";
-  studio.open({.scene = order.scene});
-  ASSERT_TRUE(facts.scene) << facts.message;
-  order.of = facts.scene;
   order.size = {16, 16};
+  open(b.glb());
   for (const char* name : {"a.png", "a.exr"}) {
     studio.save({.picture = order, .file = folder / name, .command = {}, .frames = {}});
     EXPECT_TRUE(facts.problem) << name;
@@ -82,8 +56,7 @@ TEST(PictureStudio, PicturesThatAreNotFiniteAreNotSaved) {
 }
 
 /// ImGui ends the program at a slider that goes as far as a float does.
-TEST(PictureStudio, AnimationsWithoutAnEndInSightAreEndless) {
-  const test::TemporaryFolder folder;
+TEST_F(PictureStudioTest, AnimationsWithoutAnEndInSightAreEndless) {
   GltfBuilder b;
   const int node = b.triangle();
   const int places = b.vec3({{0, 0, 0}, {1, 0, 0}});
@@ -95,11 +68,6 @@ TEST(PictureStudio, AnimationsWithoutAnEndInSightAreEndless) {
                                {{{"sampler", 0}, {"target", {{"node", node}, {"path", "translation"}}}}})}});
   }
   writeFile(folder / "long.glb", b.glb());
-  const auto context = Context::create({});
-  gpu::Device device(*context);
-  PictureFacts facts;
-  PictureStudio studio(
-      device, {}, {}, [&](const PictureFacts& newest) { facts = newest; }, [] {});
   SceneQuestion scene;
   scene.scene = (folder / "long.glb").string();
   const auto secondsOf = [&](const char* animation) {
@@ -114,16 +82,9 @@ TEST(PictureStudio, AnimationsWithoutAnEndInSightAreEndless) {
 
 /// From then on, not from its first picture on, whose shaders may take seconds: a light of the scene before
 /// that is changed meanwhile would be one that the scene does not have.
-TEST(PictureStudio, LightsAreThoseOfTheSceneThatWasOpened) {
-  const test::TemporaryFolder folder;
-  const auto context = Context::create({});
-  gpu::Device device(*context);
-  PictureFacts facts;
-  PictureStudio studio(
-      device, {}, {}, [&](const PictureFacts& newest) { facts = newest; }, [] {});
+TEST_F(PictureStudioTest, LightsAreThoseOfTheSceneThatWasOpened) {
   for (const char* name : {"lamp", "panel"}) {
     SCOPED_TRACE(name);
-    PictureOrder order;
     order.scene.scene = (folder / (std::string(name) + ".glb")).string();
     writeFile(order.scene.scene, lampFile(name));
     studio.open({.scene = order.scene});
@@ -131,56 +92,43 @@ TEST(PictureStudio, LightsAreThoseOfTheSceneThatWasOpened) {
     EXPECT_EQ(facts.lights[0].name, name);
     EXPECT_TRUE(facts.lights[0].editable);
     order.of = facts.scene;
-    order.size = {16, 12};
-    studio.step(order, [] { return false; });
+    step();
     EXPECT_EQ(facts.picture.problem, "");
   }
 }
 
 /// What was wrong with a shader is said no longer when another scene is opened, whose programs are new.
-TEST(PictureStudio, ProblemsOfShadersEndWithTheScene) {
-  const test::TemporaryFolder folder;
+TEST_F(PictureStudioTest, ProblemsOfShadersEndWithTheScene) {
   writeFile(folder / "lamp.glb", lampFile());
   const std::filesystem::path inside = "glsl/deferred/tone_map.comp.glsl";
   std::filesystem::create_directories((folder.path() / inside).parent_path());
   const std::string good = readTextFile(std::filesystem::path(test::kSourceDir) / inside);
   writeTextFile(folder.path() / inside, good);
-  const auto context = Context::create({});
-  gpu::Device device(*context);
-  PictureFacts facts;
-  PictureStudio studio(
+  PictureStudio reading(
       device, folder.path(), {}, [&](const PictureFacts& newest) { facts = newest; }, [] {});
-  PictureOrder order;
   order.scene.scene = (folder / "lamp.glb").string();
-  order.size = {16, 12};
-  const auto step = [&] { studio.step(order, [] { return false; }); };
-  const auto open = [&] {
-    studio.open({.scene = order.scene});
+  const auto follow = [&] { reading.step(order, [] { return false; }); };
+  const auto openAgain = [&] {
+    reading.open({.scene = order.scene});
     order.of = facts.scene;
-    step();
+    follow();
   };
-  open();
+  openAgain();
   EXPECT_EQ(facts.picture.problem, "");
   writeTextFile(folder.path() / inside, good + "not a shader");
   for (int i = 0; i < 200 && facts.shaderProblem.empty(); ++i) {
     std::this_thread::sleep_for(std::chrono::milliseconds(50));
-    step();
+    follow();
   }
   ASSERT_NE(facts.shaderProblem, "");
   writeTextFile(folder.path() / inside, good);
-  open();
+  openAgain();
   EXPECT_EQ(facts.shaderProblem, "");
   EXPECT_EQ(facts.picture.problem, "");
 }
 
 /// Whoever operates the window by a script reads what happened line by line.
-TEST(PictureStudio, SaysInOneLineWhatFailed) {
-  const test::TemporaryFolder folder;
-  const auto context = Context::create({});
-  gpu::Device device(*context);
-  PictureFacts facts;
-  PictureStudio studio(
-      device, {}, {}, [&](const PictureFacts& newest) { facts = newest; }, [] {});
+TEST_F(PictureStudioTest, SaysInOneLineWhatFailed) {
   SceneQuestion scene;
   scene.scene = (folder / "two\nlines.glb").string();
   studio.open({.scene = scene});
@@ -189,14 +137,8 @@ TEST(PictureStudio, SaysInOneLineWhatFailed) {
 }
 
 /// What was asked for while an environment that cannot be read was still being opened.
-TEST(PictureStudio, ARefusedOrderTakesNothingElseWithIt) {
-  const test::TemporaryFolder folder;
+TEST_F(PictureStudioTest, ARefusedOrderTakesNothingElseWithIt) {
   writeFile(folder / "lamp.glb", lampFile());
-  const auto context = Context::create({});
-  gpu::Device device(*context);
-  PictureFacts facts;
-  PictureStudio studio(
-      device, {}, {}, [&](const PictureFacts& newest) { facts = newest; }, [] {});
   SceneQuestion scene;
   scene.scene = (folder / "lamp.glb").string();
   studio.open({.scene = scene, .file = 1});
@@ -222,25 +164,12 @@ TEST(PictureStudio, ARefusedOrderTakesNothingElseWithIt) {
 }
 
 /// What can be ended is a sequence that is being saved, not a scene that is being opened.
-TEST(PictureStudio, SaysWhatCanBeEnded) {
-  const test::TemporaryFolder folder;
-  writeFile(folder / "lamp.glb", lampFile());
-  const auto context = Context::create({});
-  gpu::Device device(*context);
-  PictureFacts facts;
+TEST_F(PictureStudioTest, SaysWhatCanBeEnded) {
   std::vector<std::string> endable, jobs;
-  PictureStudio studio(
-      device, {}, {},
-      [&](const PictureFacts& newest) {
-        facts = newest;
-        if (!facts.job.empty()) (facts.saving ? endable : jobs).push_back(facts.job);
-      },
-      [] {});
-  PictureOrder order;
-  order.scene.scene = (folder / "lamp.glb").string();
-  studio.open({.scene = order.scene});
-  order.of = facts.scene;
-  order.size = {16, 12};
+  heard = [&](const PictureFacts& newest) {
+    if (!newest.job.empty()) (newest.saving ? endable : jobs).push_back(newest.job);
+  };
+  open(lampFile());
   studio.save({.picture = order, .file = folder / "a.png", .command = {}, .frames = FrameRange{0, 1}});
   while (studio.saving()) studio.saveNext();
   EXPECT_EQ(jobs, std::vector<std::string>{"opening lamp.glb"});

@@ -11,11 +11,9 @@
 #include <thread>
 
 #include "core/base/error.h"
-#include "core/base/file.h"
 #include "core/technique/technique.h"
-#include "tests/cli/process.h"
 #include "tests/support/gltf_builder.h"
-#include "tests/view/lamp_file.h"
+#include "tests/view/picture_studio_harness.h"
 
 namespace limn::app {
 namespace {
@@ -80,23 +78,10 @@ const TechniquePlugin kSlowFramesPlugin{
 
 /// A picture at rest takes more frames than the one that is shown at first. The window goes on where one of
 /// them fails, and does not try it over and over.
-TEST(PictureStudio, AFrameThatFailsAtRestIsSaid) {
-  const test::TemporaryFolder folder;
-  writeFile(folder / "lamp.glb", lampFile());
-  const auto context = Context::create({});
-  gpu::Device device(*context);
-  PictureFacts facts;
-  PictureStudio studio(
-      device, {}, {}, [&](const PictureFacts& newest) { facts = newest; }, [] {});
-  PictureOrder order;
-  order.scene.scene = (folder / "lamp.glb").string();
+TEST_F(PictureStudioTest, AFrameThatFailsAtRestIsSaid) {
   order.scene.aa = 2;
   order.techniques.push_back({&kOneFramePlugin, ParameterValues(kOneFrame.name, kOneFrame.parameters)});
-  studio.open({.scene = order.scene});
-  ASSERT_TRUE(facts.scene) << facts.message;
-  order.of = facts.scene;
-  order.size = {16, 12};
-  const auto step = [&] { studio.step(order, [] { return false; }); };
+  open(lampFile());
   step();
   EXPECT_EQ(facts.picture.problem, "there is no second frame");
   EXPECT_TRUE(facts.settled);
@@ -110,22 +95,9 @@ TEST(PictureStudio, AFrameThatFailsAtRestIsSaid) {
 
 /// Nor does a frame of a sequence that fails leave a renderer with half of it: the window's picture comes
 /// back.
-TEST(PictureStudio, AfterASequenceThatFailsThePictureComesBack) {
-  const test::TemporaryFolder folder;
-  writeFile(folder / "lamp.glb", lampFile());
-  const auto context = Context::create({});
-  gpu::Device device(*context);
-  PictureFacts facts;
-  PictureStudio studio(
-      device, {}, {}, [&](const PictureFacts& newest) { facts = newest; }, [] {});
-  PictureOrder order;
-  order.scene.scene = (folder / "lamp.glb").string();
+TEST_F(PictureStudioTest, AfterASequenceThatFailsThePictureComesBack) {
   order.techniques.push_back({&kOneFramePlugin, ParameterValues(kOneFrame.name, kOneFrame.parameters)});
-  studio.open({.scene = order.scene});
-  ASSERT_TRUE(facts.scene) << facts.message;
-  order.of = facts.scene;
-  order.size = {16, 12};
-  const auto step = [&] { studio.step(order, [] { return false; }); };
+  open(lampFile());
   step();
   EXPECT_EQ(facts.picture.problem, "");
   studio.save({.picture = order, .file = folder / "a.png", .command = {}, .frames = FrameRange{0, 1}});
@@ -139,22 +111,9 @@ TEST(PictureStudio, AfterASequenceThatFailsThePictureComesBack) {
 
 /// As when a file is to be opened, which turns out to be impossible: nothing has changed, and the whole
 /// picture stays.
-TEST(PictureStudio, NoSmallerPictureTakesThePlaceOfTheSameOne) {
-  const test::TemporaryFolder folder;
-  writeFile(folder / "lamp.glb", lampFile());
-  const auto context = Context::create({});
-  gpu::Device device(*context);
-  PictureFacts facts;
-  PictureStudio studio(
-      device, {}, {}, [&](const PictureFacts& newest) { facts = newest; }, [] {});
-  PictureOrder order;
-  order.scene.scene = (folder / "lamp.glb").string();
+TEST_F(PictureStudioTest, NoSmallerPictureTakesThePlaceOfTheSameOne) {
   order.techniques.push_back({&kSlowFramesPlugin, ParameterValues(kSlowFrames.name, kSlowFrames.parameters)});
-  studio.open({.scene = order.scene});
-  ASSERT_TRUE(facts.scene) << facts.message;
-  order.of = facts.scene;
-  order.size = {16, 12};
-  const auto step = [&] { studio.step(order, [] { return false; }); };
+  open(lampFile());
   step();
   EXPECT_TRUE(facts.picture.whole) << facts.picture.problem;
   const uint64_t pictures = facts.pictures;
@@ -174,56 +133,28 @@ TEST(PictureStudio, NoSmallerPictureTakesThePlaceOfTheSameOne) {
 
 /// A picture that is made again gives the scene its lights again, for which the truth stops reading it. Where
 /// these were changed meanwhile and are as before, the question is the same, and it must be asked again.
-TEST(PictureStudio, TheTruthGoesOnWhenLightsAreSetAgain) {
-  const test::TemporaryFolder folder;
-  writeFile(folder / "lamp.glb", lampFile());
-  const auto context = Context::create({});
-  gpu::Device device(*context);
-  PictureFacts facts;
-  PictureStudio studio(
-      device, {}, {}, [&](const PictureFacts& newest) { facts = newest; }, [] {});
-  PictureOrder order;
-  order.scene.scene = (folder / "lamp.glb").string();
+TEST_F(PictureStudioTest, TheTruthGoesOnWhenLightsAreSetAgain) {
   order.scene.defaultLights = "on";  // which follow the camera
   order.scene.lightSettings = {"lamp.intensity=3"};
-  studio.open({.scene = order.scene});
-  ASSERT_TRUE(facts.scene) << facts.message;
-  order.of = facts.scene;
-  order.size = {16, 12};
+  open(lampFile());
   order.beside = Beside::reference;
-  const auto never = [] { return false; };
-  studio.step(order, never);
+  step();
   EXPECT_EQ(facts.picture.problem, "");
   EXPECT_TRUE(facts.reference.running);
   order.tone.exposureEv = 1;
-  studio.step(order, never);
+  step();
   EXPECT_TRUE(facts.reference.running);
 }
 
 /// Not even for the frame of the window in which the reference has not been asked again.
-TEST(PictureStudio, TheTruthOfBeforeNeverStandsBesideANewPicture) {
-  const test::TemporaryFolder folder;
-  writeFile(folder / "lamp.glb", lampFile());
-  const auto context = Context::create({});
-  gpu::Device device(*context);
-  PictureFacts facts;
+TEST_F(PictureStudioTest, TheTruthOfBeforeNeverStandsBesideANewPicture) {
   std::shared_ptr<const Image8> before;
   bool stale = false;
-  PictureStudio studio(
-      device, {}, {},
-      [&](const PictureFacts& newest) {
-        stale = stale || (before && newest.truth == before && newest.pictures > facts.pictures);
-        facts = newest;
-      },
-      [] {});
-  PictureOrder order;
-  order.scene.scene = (folder / "lamp.glb").string();
-  studio.open({.scene = order.scene});
-  ASSERT_TRUE(facts.scene) << facts.message;
-  order.of = facts.scene;
-  order.size = {16, 12};
+  heard = [&](const PictureFacts& newest) {
+    stale = stale || (before && newest.truth == before && newest.pictures > facts.pictures);
+  };
+  open(lampFile());
   order.beside = Beside::reference;
-  const auto step = [&] { studio.step(order, [] { return false; }); };
   step();
   for (int i = 0; i < 200 && !facts.truth; ++i) {
     std::this_thread::sleep_for(std::chrono::milliseconds(50));
@@ -240,8 +171,7 @@ TEST(PictureStudio, TheTruthOfBeforeNeverStandsBesideANewPicture) {
 
 /// A lamp that an animation turns below a node of unequal scale is no rectangle for a while, and then no
 /// light that could be found. Its picture is refused then, whoever asks, and comes back with the light.
-TEST(PictureStudio, LightsThatWereNoneForAWhileComeBack) {
-  const test::TemporaryFolder folder;
+TEST_F(PictureStudioTest, LightsThatWereNoneForAWhileComeBack) {
   GltfBuilder b;
   const int glow = b.append("materials", {{"emissiveFactor", {1, 1, 1}}});
   const int corners = b.vec3({{-1, -1, 0}, {1, -1, 0}, {1, 1, 0}, {-1, 1, 0}});
@@ -256,24 +186,13 @@ TEST(PictureStudio, LightsThatWereNoneForAWhileComeBack) {
            {{"samplers", GltfBuilder::json::array({{{"input", times}, {"output", turns}}})},
             {"channels", GltfBuilder::json::array(
                              {{{"sampler", 0}, {"target", {{"node", node}, {"path", "rotation"}}}}})}});
-  writeFile(folder / "lamp.glb", b.glb());
-  const auto context = Context::create({});
-  gpu::Device device(*context);
-  PictureFacts facts;
-  PictureStudio studio(
-      device, {}, {}, [&](const PictureFacts& newest) { facts = newest; }, [] {});
-  PictureOrder order;
-  order.scene.scene = (folder / "lamp.glb").string();
   order.scene.lightSettings = {"lamp.position=0,2,0"};
-  studio.open({.scene = order.scene});
-  ASSERT_TRUE(facts.scene) << facts.message;
-  order.of = facts.scene;
-  order.size = {16, 12};
+  open(b.glb());
   const auto problemAt = [&](double time, const char* eye) {
     order.scene.time = time;
     order.scene.eye = eye;
     order.scene.target = "0,0,0";
-    studio.step(order, [] { return false; });
+    step();
     return facts.picture.problem;
   };
   EXPECT_EQ(problemAt(0, "0,0,5"), "");
