@@ -3,8 +3,8 @@
 
 int main(int argc, char** argv) {
   using limn::app::ChapterSetting;
-  constexpr const char* suites[] = {"subtractive_figures", "subtractive", "subtractive_grid",
-                                    "subtractive_lights"};
+  constexpr const char* suites[] = {"subtractive_figures", "subtractive", "subtractive_time",
+                                    "subtractive_grid", "subtractive_lights"};
   constexpr ChapterSetting settings[] = {
       {"U: without shadows", "", "",
        "All that the sky would give, from filtered maps. Look at --scene nine_spheres, nine_spheres_glossy, "
