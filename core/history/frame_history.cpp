@@ -4,7 +4,6 @@
 
 #include <algorithm>
 #include <array>
-#include <cstring>
 #include <optional>
 #include <string>
 
@@ -28,6 +27,13 @@ glsl::HistoryFrame viewOf(const glsl::FrameBlock& frame) {
           .still = 0,
           .age = 0,
           .moved = 0};
+}
+
+/// Whether each pixel looks the same way in both. What a scene's bounds change, the depths that clip space
+/// holds, is no part of it.
+bool seenAlike(const glsl::HistoryFrame& a, const glsl::HistoryFrame& b) {
+  return a.camera_position == b.camera_position && a.view_ray_origin == b.view_ray_origin &&
+         a.view_ray_dx == b.view_ray_dx && a.view_ray_dy == b.view_ray_dy;
 }
 
 std::vector<glm::mat4> placesOf(const scene::Pose& pose) {
@@ -65,12 +71,12 @@ struct FrameHistoryService::Kept {
 /// first frame with the instances where they are now.
 void FrameHistoryService::Kept::find(const glsl::FrameBlock& now, uint32_t placed) {
   count = 0;
-  glsl::HistoryFrame view = viewOf(now);
+  const glsl::HistoryFrame view = viewOf(now);
   for (uint32_t age = std::min(static_cast<uint32_t>(frames), now.frame_index); age > 0; --age) {
     const int slot = slotOf(now.frame_index - age);
     const std::optional<Slot>& held = slots.at(static_cast<size_t>(slot));
     if (!held || held->frame != now.frame_index - age) continue;
-    const bool still = std::memcmp(&held->view, &view, sizeof(view)) == 0;
+    const bool still = seenAlike(held->view, view);
     glsl::HistoryFrame& before = found.at(static_cast<size_t>(count++));
     before = held->view;
     before.slot = static_cast<uint32_t>(slot);

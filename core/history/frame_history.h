@@ -11,7 +11,7 @@
 // hidden: where neither light nor surfaces change, pictures do not change from frame to frame. The frame
 // before the last k had the samples of this one. What differs between the two is therefore no noise but light
 // that changed, and the more it is, the less older frames count. Where a pixel has a part of a frame's
-// samples, this holds only as long as the camera stands still.
+// samples, this holds only of places that camera and instances leave at the same pixel.
 #pragma once
 
 #include <cstdint>

@@ -28,6 +28,12 @@ void toWorld(const scene::Primitive& primitive, const glm::mat4& place, std::vec
   for (const glm::vec3& p : primitive.positions) positions.emplace_back(place * glm::vec4(p, 1));
 }
 
+/// Whether the mask is open here and closed there.
+bool hasOwnMask(const scene::Primitive& primitive, const scene::Material& material) {
+  const bool textured = material.baseColourTexture.image != scene::kNone && !primitive.uvs.empty();
+  return material.alphaCutoff > 0 && (textured || !primitive.colours.empty());
+}
+
 }  // namespace
 
 /// What the instance is made of. Only one that moved may have become flat, or solid, since.
@@ -166,10 +172,11 @@ RayGeometryService::Mesh RayGeometryService::addMesh(Parts& parts, const scene::
   mesh.firstTriangle = static_cast<uint32_t>(parts.triangles.size() / 3);
   mesh.triangles = triangleCount(primitive);
   mesh.capacity = source.dynamic ? capacityFor(mesh.triangles) : mesh.triangles;
+  const scene::Material& material = scene::materialOf(scene_, instance);
+  const bool masked = hasOwnMask(primitive, material);
   if (source.dynamic) {
-    // It has no texture coordinates: its mask is open everywhere or nowhere.
-    const scene::Material& material = scene::materialOf(scene_, instance);
-    mesh.transparent = material.baseColour.a < material.alphaCutoff;
+    // Without a texture and colours a mask is open everywhere or nowhere, and takes no look-up.
+    mesh.transparent = !masked && material.baseColour.a < material.alphaCutoff;
     mesh.built = pose.dynamic[static_cast<size_t>(instance.mesh)].primitive;
   }
   const bool flat = source.flat != scene::kNone;
@@ -185,8 +192,7 @@ RayGeometryService::Mesh RayGeometryService::addMesh(Parts& parts, const scene::
     buildTree(primitive, positions);
     appendTree(parts.nodes, parts.triangles, primitive, positions, mesh.root, mesh.firstTriangle);
     meshStack_ = std::max(meshStack_, builder_.stack());
-    if (!source.dynamic)
-      mesh.coverage = parts.coverage.add(primitive, scene::materialOf(scene_, instance), builder_.order());
+    if (!source.dynamic || masked) mesh.coverage = parts.coverage.add(primitive, material, builder_.order());
     if (moves) addMotion(parts, primitive, draw, mesh.root);
   }
   if (source.dynamic || flat) {
@@ -223,12 +229,15 @@ bool RayGeometryService::rebuildMeshes(const scene::Pose& pose, bool& changed) {
       const std::shared_ptr<const scene::Primitive>& now =
           pose.dynamic[static_cast<size_t>(instance.mesh)].primitive;
       if (mesh.built == now) continue;
+      // Masks lie in the order of the leaves: they are made with the whole.
+      if (mesh.coverage != glsl::ray_opaque || hasOwnMask(primitive, scene::materialOf(scene_, instance)))
+        return false;
       if (triangleCount(primitive) > mesh.capacity) return false;
       mesh.built = now;
       mesh.triangles = triangleCount(primitive);
     } else {
       if (source.flat == scene::kNone || mesh.place == instance.objectToWorld) continue;
-      if (mesh.coverage != glsl::ray_opaque) return false;  // masks lie in the order of the leaves
+      if (mesh.coverage != glsl::ray_opaque) return false;  // as above
       mesh.place = instance.objectToWorld;
       toWorld(primitive, mesh.place, inWorld_);
     }

@@ -3,8 +3,8 @@
 // no farther from its tangent plane than a pixel is wide.
 //
 // The frame before the first of them had the samples of this one, so that what differs between the two is no noise: light that
-// changed, for which older frames count less. A pixel that has a part of a frame's samples has others of them wherever the camera
-// moves: what differs there says nothing of the light.
+// changed, for which older frames count less. Where a place comes to another pixel, as camera or surface move, a pixel that has a
+// part of the samples of a frame has others of them there: what differs then says nothing of the light.
 //
 // What moves with an instance is found where that was. Where nothing moved, a camera that stands still sees the same surfaces.
 //
@@ -115,16 +115,17 @@ void main() {
     HistoryFrame f = frames[i];
     vec4 values[PARTS];
     for (int part = 0; part < PARTS; ++part) values[part] = vec4(0.0);
+    PlaceBefore then = place;
+    if (f.moved != 0u) then = place_before(place, f.slot);
     if (f.still == 0u || f.moved != 0u) {
-      PlaceBefore then = place;
-      if (f.moved != 0u) then = place_before(place, f.slot);
       find_place(f, then, values);
     } else {
       for (int part = 0; part < PARTS; ++part)
         values[part] = texelFetch(history_light, ivec3(pixel, int(f.slot) * PARTS + part), 0);
     }
     if (int(f.age) == frames_kept) {
-      if (whole || f.still != 0u) fade = fade_of_change * change(totals, values) / float(frames_kept);
+      bool here = f.still != 0u && then.position == place.position;  // at this pixel
+      if (whole || here) fade = fade_of_change * change(totals, values) / float(frames_kept);
     } else {
       float weight = max(1.0 - fade * float(f.age), 0.0);
       for (int part = 0; part < PARTS; ++part) totals[part] += weight * values[part];

@@ -13,7 +13,7 @@ struct HistoryFrame {
   vec4 view_ray_dx;
   vec4 view_ray_dy;
   uint slot;  // where its light lies
-  uint still;  // 1 where the view is that of this frame
+  uint still;  // 1 where its pixels look the same way as those of this frame
   uint age;   // frames since
   uint moved;  // 1 where instances may have been elsewhere than in this frame
 };

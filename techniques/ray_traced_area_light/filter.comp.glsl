@@ -10,6 +10,9 @@ layout(local_size_x = 8, local_size_y = 8) in;
 layout(std430) readonly buffer Lights { Light lights[]; };
 layout(r16) writeonly uniform image2DArray visibility;
 uniform sampler2DArray traced;
+#if FRAMES > 1
+uniform sampler2DArray this_frame;  // r / a, too
+#endif
 uniform uint light_indices[LIGHT_COUNT];
 uniform int rays;
 
@@ -36,7 +39,12 @@ void main() {
   float here = own.v;
   float depth = pixel_depth(at.xy);
   if (depth == 0.0 || !light_has_extent(lights[light_indices[at.z]])) {
-    imageStore(visibility, at, vec4(here));  // one ray is exact
+    // One ray is exact: that of this frame.
+#if FRAMES > 1
+    vec4 now = texelFetch(this_frame, at, 0);
+    here = now.a > 0.0 ? now.r / now.a : 1.0;
+#endif
+    imageStore(visibility, at, vec4(here));
     return;
   }
   vec3 position = pixel_position(at.xy, depth);

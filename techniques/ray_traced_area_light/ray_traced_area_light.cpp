@@ -59,23 +59,32 @@ class RayTracedAreaLight : public Technique {
     if (frames == 1 && !spatial) return trace(graph, inputs, request, request.target);
     gpu::TextureDesc desc = graph.desc(request.target);
     if (frames > 1) desc.format = GL_RGBA32F;
-    frame::TextureHandle traced = trace(graph, inputs, request, graph.createTexture("traced", desc));
-    if (frames > 1)
-      traced =
-          inputs.service<history::FrameHistoryService>().average(inputs.gbuffer, traced, frames, info.name);
-    return spatial ? filter(graph, inputs, request, traced) : mean(graph, inputs, request, traced);
+    const frame::TextureHandle now = trace(graph, inputs, request, graph.createTexture("traced", desc));
+    if (frames == 1) return filter(graph, inputs, request, now, {});
+    const frame::TextureHandle sums =
+        inputs.service<history::FrameHistoryService>().average(inputs.gbuffer, now, frames, info.name);
+    return spatial ? filter(graph, inputs, request, sums, now) : mean(graph, inputs, request, sums, now);
+  }
+
+  /// Declares what tells lights of which one ray is exact from others, and where their V is when `traced` is
+  /// a sum over frames; `now`: empty when it is not.
+  static void readTraced(frame::PassBuilder& pass, const TechniqueInputs& inputs, frame::TextureHandle traced,
+                         frame::TextureHandle now) {
+    pass.read(inputs.handles.lights, Access::storageLoad, "Lights", "which of them leave noise")
+        .read(traced, Access::sampled, "traced", "V with noise");
+    if (now) pass.read(now, Access::sampled, "this_frame", "V of lights without extent, which is exact");
   }
 
   /// V without the noise of few rays.
   static frame::TextureHandle filter(frame::FrameGraph& graph, const TechniqueInputs& inputs,
-                                     const TermRequest& request, frame::TextureHandle traced) {
+                                     const TermRequest& request, frame::TextureHandle traced,
+                                     frame::TextureHandle now) {
     frame::PassBuilder pass = graph.addPass("filter", info.name);
     pass.role(frame::PassRole::filter)
         .read(inputs.handles.frame, Access::uniformBuffer, "FrameBlock", "camera")
         .read(inputs.gbuffer.depth, Access::sampled, kGBufferNames.depth, "neighbours on the same surface")
-        .read(inputs.gbuffer.geometricNormal, Access::sampled, kGBufferNames.geometricNormal, "its plane")
-        .read(inputs.handles.lights, Access::storageLoad, "Lights", "which of them leave noise")
-        .read(traced, Access::sampled, "traced", "V with noise");
+        .read(inputs.gbuffer.geometricNormal, Access::sampled, kGBufferNames.geometricNormal, "its plane");
+    readTraced(pass, inputs, traced, now);
     const frame::TextureHandle target =
         pass.write(request.target, Access::imageStore, "visibility", "visibility, one layer per light");
     const frame::ProgramHandle program =
@@ -88,16 +97,21 @@ class RayTracedAreaLight : public Technique {
 
   /// V of several frames with all its noise.
   static frame::TextureHandle mean(frame::FrameGraph& graph, const TechniqueInputs& inputs,
-                                   const TermRequest& request, frame::TextureHandle traced) {
+                                   const TermRequest& request, frame::TextureHandle traced,
+                                   frame::TextureHandle now) {
     frame::PassBuilder pass = graph.addPass("mean of frames", info.name);
-    pass.role(frame::PassRole::filter).read(traced, Access::sampled, "traced", "sums over frames");
+    pass.role(frame::PassRole::filter);
+    readTraced(pass, inputs, traced, now);
     const frame::TextureHandle target =
         pass.write(request.target, Access::imageStore, "visibility", "visibility, one layer per light");
     const frame::ProgramHandle program =
-        pass.program({.files = {"techniques/ray_traced_area_light/mean.comp.glsl"}, .defines = {}});
-    pass.execute([program, size = inputs.size, lights = request.lights.size()](frame::PassContext& context) {
-      context.use(program);
-      context.dispatch(size.x, size.y, static_cast<int>(lights), 8, 8);
+        pass.program({.files = {"techniques/ray_traced_area_light/mean.comp.glsl"},
+                      .defines = {{"LIGHT_COUNT", std::to_string(request.lights.size())}}});
+    pass.execute([program, size = inputs.size,
+                  lights = std::vector<uint32_t>(request.lights.begin(), request.lights.end())](
+                     frame::PassContext& context) {
+      setLightIndices(context.use(program), lights);
+      context.dispatch(size.x, size.y, static_cast<int>(lights.size()), 8, 8);
     });
     return target;
   }

@@ -81,8 +81,8 @@ float lit_share(LightView view, ShadowRays r, vec2 shift) {
 }
 
 // What V is weighted by for frames after this one (core/history/frame_history.h). Rays to lights with extent are a part of all
-// that a frame sends to a place: as the camera moves, the place comes to a pixel with another shift. That V differs there is noise,
-// and no light that changed.
+// that a frame sends to a place: as camera or surface move, the place comes to a pixel with another shift. That V differs there is
+// noise, and no light that changed.
 float share_of_frame() {
 #if FRAMES > 1
   for (int i = 0; i < LIGHT_COUNT; ++i)

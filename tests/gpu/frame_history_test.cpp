@@ -1,10 +1,11 @@
-// What the frames that indirect light is averaged over promise.
+// What the frames that light is averaged over promise.
 #include "core/history/frame_history.h"
 
 #include <fmt/format.h>
 #include <gmock/gmock.h>
 
 #include <algorithm>
+#include <cmath>
 #include <glm/gtc/matrix_transform.hpp>
 #include <string>
 #include <string_view>
@@ -12,6 +13,7 @@
 
 #include "core/render/supersample.h"
 #include "tests/gpu/render_test.h"
+#include "tests/support/scene_nodes.h"
 
 namespace limn {
 namespace {
@@ -62,6 +64,43 @@ class FrameHistoryTest : public RenderTest {
   }
   static scene::Node& nodeOf(scene::Scene& scene, std::string_view name) {
     return *std::ranges::find(scene.nodes, name, &scene::Node::name);
+  }
+  /// A floor and, 1 m above it, a leaf, below a wide lamp; nodes 1 to 3, which come along with node 0.
+  static scene::Scene leafUnderLamp() {
+    scene::Scene scene;
+    const int grey = test::addMaterial(scene, test::lambertian(0.5f));
+    scene.nodes.emplace_back();
+    test::show(scene, test::quad({0, 0, 0}, {8, 0, 0}, {0, 0, -8}, grey));
+    test::show(scene, test::quad({0, 0, 0}, {1.6f, 0, 0}, {0, 0, -1.6f}, grey),
+               glm::translate(glm::mat4(1), {0, 1, 0}));
+    test::shine(scene, test::lamp(glsl::light_point, 6), {0, 3, 0});
+    scene.nodes.back().limnArea = glm::vec2(1.5f);
+    for (size_t i = 1; i < scene.nodes.size(); ++i) scene.nodes[i].parent = 0;
+    return scene;
+  }
+  /// One ray of a pixel and frame: a part of those that a frame sends to a place.
+  static render::Settings oneRay() {
+    render::Settings s =
+        settings(kSize.x, kSize.y, Term::visibility,
+                 {technique("ray_traced_area_light",
+                            {{"rays", "1"}, {"filter", "none"}, {"history", std::to_string(kFrames)}})},
+                 0);
+    s.channels = true;
+    return s;
+  }
+  /// Sees the floor below the leaf.
+  static scene::CameraPose underLeaf() { return scene::lookAt({0, 1.5f, 4}, {0, 0, 0}, 0.8f); }
+  /// Root mean square of what V of the floor, instance 0, is off.
+  static double floorError(const Image& image, const Image& exact) {
+    double sum = 0, count = 0;
+    for (int y = 0; y < kSize.y; ++y)
+      for (int x = 0; x < kSize.x; ++x) {
+        if (image.at(x, y, image.channel("id")) != 0.f || exact.at(x, y, exact.channel("id")) != 0.f)
+          continue;
+        sum += std::pow(double(image.at(x, y, 0)) - double(exact.at(x, y, 0)), 2);
+        ++count;
+      }
+    return std::sqrt(sum / count);
   }
 };
 
@@ -263,6 +302,80 @@ TEST_F(FrameHistoryTest, FlatInstancesKeepTheirLight) {
   };
   const Image expected = seen(scene);
   EXPECT_LT(rmse(seen(animated), expected), 0.01 * mean(expected));
+}
+
+/// A pixel has the rays that it had kFrames ago as long as the camera stands still, also where what moves
+/// changes how far the scene reaches, and with it the depths that clip space holds: here behind the floor.
+TEST_F(FrameHistoryTest, ShadowsThatMoveLeaveNoTraceBeforeAStillCamera) {
+  for (const float away : {-3.f, -6.f}) {
+    SCOPED_TRACE(away);
+    scene::Scene scene = leafUnderLamp();
+    render::Renderer renderer(device(), scene);
+    const auto at = [&](float z) {
+      scene.nodes[2].placed = glm::translate(glm::mat4(1), {0, 1, z});
+      renderer.setTime(0);
+      return next(renderer, underLeaf());
+    };
+    renderer.configure(oneRay());
+    Image before;
+    for (int frame = 0; frame < kFrames; ++frame) before = at(0);
+    const Image now = at(away);
+    const int id = now.channel("id");
+    int left = 0;
+    for (int y = 0; y < kSize.y; ++y)
+      for (int x = 0; x < kSize.x; ++x) {
+        if (before.at(x, y, id) != 0.f || now.at(x, y, id) != 0.f || before.at(x, y, 0) > 0.f) continue;
+        EXPECT_EQ(now.at(x, y, 0), 1.f) << x << "," << y;
+        ++left;
+      }
+    EXPECT_GT(left, 50);
+  }
+}
+
+/// What moves comes to pixels with other rays, as it does where the camera moves: k frames count, whose mean
+/// has 1 / sqrt(k) of the noise, and less where neighbours share in it.
+TEST_F(FrameHistoryTest, FramesCountOnWhatMovesBeforeAStillCamera) {
+  scene::Scene scene = leafUnderLamp();
+  render::Renderer renderer(device(), scene);
+  const auto last = [&](int frames) {
+    renderer.configure(oneRay());
+    for (int frame = 1 - frames; frame <= 0; ++frame) {
+      scene.nodes[0].placed = glm::translate(glm::mat4(1), {0.02f * static_cast<float>(frame), 0, 0});
+      renderer.setTime(0);
+      renderer.setCamera(underLeaf());
+      renderer.render();
+    }
+    return renderer.read();
+  };
+  const Image one = last(1), many = last(2 * kFrames);
+  reference::Request asked = test::request(scene, renderer.pose(), underLeaf(), kSize, Term::visibility, 256);
+  asked.light = 0;
+  const Image exact = reference::render(asked).image;
+  EXPECT_LT(floorError(many, exact), 0.6 * floorError(one, exact));
+}
+
+/// One ray of a lamp without extent is exact: a leaf that is back where it was kFrames ago hides what it hid
+/// then, wherever it was meanwhile.
+TEST_F(FrameHistoryTest, HardShadowsAreThoseOfThisFrame) {
+  for (const char* filter : {"none", "spatial"}) {
+    SCOPED_TRACE(filter);
+    scene::Scene scene = leafUnderLamp();
+    scene.nodes.back().limnArea = glm::vec2(0);
+    render::Renderer renderer(device(), scene);
+    render::Settings s = oneRay();
+    s.techniques[0].parameters.set("filter", filter);
+    renderer.configure(s);
+    const auto at = [&](float z) {
+      scene.nodes[2].placed = glm::translate(glm::mat4(1), {0, 1, z});
+      renderer.setTime(0);
+      return next(renderer, underLeaf());
+    };
+    const Image first = at(0);
+    Image meanwhile;
+    for (int frame = 1; frame < kFrames; ++frame) meanwhile = at(-3);
+    EXPECT_FALSE(std::ranges::equal(meanwhile.data(), first.data()));
+    EXPECT_TRUE(std::ranges::equal(at(0).data(), first.data()));
+  }
 }
 
 /// Shaders reach no further into a buffer than the device's largest storage block.

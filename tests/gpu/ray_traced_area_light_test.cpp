@@ -2,12 +2,15 @@
 // in every frame.
 #include <algorithm>
 #include <cstdio>
+#include <memory>
 #include <optional>
+#include <utility>
 
 #include "core/reference/reference.h"
 #include "core/render/supersample.h"
 #include "tests/gpu/render_test.h"
 #include "tests/gpu/technique_harness.h"
+#include "tests/support/scene_nodes.h"
 #include "tests/support/test_scenes.h"
 
 namespace limn {
@@ -197,6 +200,69 @@ TEST_F(RayTracedAreaLightTest, GeometryThatChangedWithoutRaysIsWhatAFreshStartSe
   const Image now = at(paused, 2);
   fresh.configure(rays(2));
   EXPECT_EQ(values(now), values(at(fresh, 2)));
+}
+
+/// A leaf of 1.6 m, 1 m high, of which the part with x below 0 is there, and from 1 s on the other one.
+class HalfLeaf : public scene::GeometrySource {
+ public:
+  HalfLeaf(bool textured, int material) {
+    for (auto* leaf : {&left_, &right_}) {
+      scene::Primitive half = test::quad({0, 1, 0}, {1.6f, 0, 0}, {0, 0, -1.6f}, material);
+      for (size_t i = 0; i < half.positions.size(); ++i) {
+        const bool there = (half.positions[i].x < 0) == (leaf == &left_);
+        half.uvs[i].x = there ? 0.f : 1.f;
+        if (!textured) half.colours.emplace_back(1.f, 1.f, 1.f, there ? 1.f : 0.f);
+      }
+      if (!textured) half.uvs.clear();
+      *leaf = std::make_shared<const scene::Primitive>(std::move(half));
+    }
+  }
+  std::shared_ptr<const scene::Primitive> at(double time) override { return time < 1 ? left_ : right_; }
+
+ private:
+  std::shared_ptr<const scene::Primitive> left_, right_;
+};
+
+/// Of geometry that a source makes, too: by a texture or by colours of its vertices.
+TEST_F(RayTracedAreaLightTest, MasksOfASourceLetLightPass) {
+  for (const bool textured : {true, false}) {
+    SCOPED_TRACE(textured ? "texture" : "colours");
+    scene::Scene scene;
+    scene::TextureImage half;
+    half.levels.push_back({2, 1, {255, 255, 255, 255, 255, 255, 255, 0}});
+    scene.images.push_back(half);
+    scene::Material mask = test::lambertian(0.5f);
+    mask.alphaCutoff = 0.5f;
+    if (textured) mask.baseColourTexture = {0, scene::Wrap::clamp, scene::Wrap::clamp};
+    const int ground = test::addMaterial(scene, test::lambertian(0.5f));
+    const int masked = test::addMaterial(scene, mask);
+    test::show(scene, test::quad({0, 0, 0}, {8, 0, 0}, {0, 0, -8}, ground));
+    scene.dynamic.push_back({"leaf", std::make_shared<HalfLeaf>(textured, masked), masked});
+    test::shine(scene, test::lamp(glsl::light_point, 6), {0, 3, 0});
+    render::Renderer renderer(device(), scene);
+    const scene::CameraPose camera = scene::lookAt({0, 1.5f, 4}, {0, 0, 0}, 0.8f);
+    renderer.configure(rays(1));
+    for (const double time : {0.0, 1.0, 0.0}) {
+      renderer.setTime(time, scene::kNone);
+      renderer.setCamera(camera);
+      renderer.render();
+      const Image image = renderer.read();
+      const test::ViewRays view(camera, renderer.pose().bounds, {kWidth, kHeight});
+      int shaded = 0, lit = 0;
+      for (int y = 0; y < kHeight; ++y) {
+        for (int x = 0; x < kWidth; ++x) {
+          if (image.at(x, y, image.channel("id")) != 0.f) continue;
+          const glm::dvec3 p = view.eye() + double(image.at(x, y, image.channel("Z"))) * view.ray(x, y);
+          // The leaf's shadow reaches 1.2 m to all sides.
+          if (std::abs(p.x) < 0.1 || std::max(std::abs(p.x), std::abs(p.z)) > 1.1) continue;
+          const bool hidden = (p.x < 0) == (time < 1);
+          (hidden ? shaded : lit) += 1;
+          ASSERT_EQ(image.at(x, y, 0), hidden ? 0.f : 1.f) << p.x << " " << p.z << " at " << time;
+        }
+      }
+      EXPECT_GT(std::min(shaded, lit), 100);
+    }
+  }
 }
 
 /// They have their triangles in world space: a block that is flat moves, rises to its height and falls again.
