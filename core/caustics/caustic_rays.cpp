@@ -103,6 +103,10 @@ struct CausticRayService::Implementation {
 /// Views of the specular objects for the current lights and bounds.
 void CausticRayService::Implementation::fit(Request& request) const {
   const scene::Bounds objects = scene.specularBounds();
+  // The search for the end of a way through an object has points all along it: other objects are not to draw
+  // them apart.
+  float diameter = 0;
+  for (const scene::Bounds& box : boxes) diameter = std::max(diameter, 2 * box.radius());
   request.views.clear();
   request.layers.clear();
   float mapIndex = 0;
@@ -120,7 +124,7 @@ void CausticRayService::Implementation::fit(Request& request) const {
       shadow::appendViews(eye, index, shadow::fitLayout(eye, boxes, desc), boxes, desc, nullptr,
                           request.views, ofPoint);
       request.layers.resize(request.views.size(), glsl::CausticLayer{.light = mapIndex,
-                                                                     .diameter = 2 * objects.radius(),
+                                                                     .diameter = diameter,
                                                                      .first = ofPoint[0].first_layer,
                                                                      .faces = ofPoint[0].faces});
       ++mapIndex;

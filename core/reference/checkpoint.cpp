@@ -49,7 +49,7 @@ bool loadCheckpoint(const std::filesystem::path& file, const std::string& hash, 
   try {
     bytes = readFile(file, sizeof(Header) + payloadSize);
   } catch (const Error&) {
-    return false;  // unreadable or of another size: the work starts anew
+    return false;  // unreadable or of another size: the work starts from nothing
   }
   if (bytes.size() != sizeof(Header) + payloadSize) return false;
   Header header;

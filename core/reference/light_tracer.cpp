@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <iterator>
 #include <limits>
 #include <optional>
 
@@ -19,6 +20,9 @@ namespace {
 
 constexpr int kScatterPoints = 4;            // on each segment in the medium
 constexpr size_t kMostFilmPixels = 1 << 22;  // of all films together, unless two are more
+constexpr size_t kMostShares = 1 << 20;      // of paths that go to an object, of all lights together
+constexpr float kWiden = 1.001f;             // of spheres, for rounding
+constexpr float kAllDirections = 2;          // 1 - cosine of half of a full turn
 
 /// Flux that arrives from a light in the direction of the objects, per sample, before the light's own
 /// directional factors.
@@ -26,6 +30,18 @@ struct Aim {
   glm::vec3 origin, direction;
   float measure;  ///< solid angle (sr), or area across parallel light (m^2), that the sample stands for
 };
+
+/// 1 - cosine of the half angle of a cone around a sphere; kAllDirections from within it, and nearly so.
+float capAround(float distance, float radius) {
+  const float ratio = distance > 0 ? radius / distance : 2.f;
+  return ratio < 0.999f ? ratio * ratio / (1 + std::sqrt(1 - ratio * ratio)) : kAllDirections;
+}
+
+/// The measure of what light from the light's centre is sent to around a sphere, as Aim has it.
+float measureAround(const glsl::Light& light, const glm::vec3& centre, float radius) {
+  if (light.type == glsl::light_directional) return glsl::pi * radius * radius;
+  return 2 * glsl::pi * capAround(glm::distance(light.position, centre), radius);
+}
 
 Aim aimAt(const glsl::Light& light, const glm::vec3& centre, float radius, float away, glm::vec2 u,
           glm::vec2 onLight) {
@@ -37,12 +53,11 @@ Aim aimAt(const glsl::Light& light, const glm::vec3& centre, float radius, float
   }
   const glm::vec3 origin = lightPoint(light, onLight), towards = centre - origin;
   const float distance = glm::length(towards);
-  const float ratio = distance > 0 ? radius / distance : 2.f;
-  if (!(ratio < 0.999f)) {
+  const float cap = capAround(distance, radius);
+  if (cap == kAllDirections) {
     const float z = 1 - 2 * u.x, r = std::sqrt(std::max(1 - z * z, 0.f)), angle = 2 * glsl::pi * u.y;
     return {origin, {r * std::cos(angle), r * std::sin(angle), z}, 4 * glsl::pi};
   }
-  const float cap = ratio * ratio / (1 + std::sqrt(1 - ratio * ratio));  // 1 - cosine of the half angle
   const float down = cap * u.x, lateral = std::sqrt(down * (2 - down)), angle = 2 * glsl::pi * u.y;
   const glm::vec3 local(lateral * std::cos(angle), lateral * std::sin(angle), 1 - down);
   return {origin, glm::normalize(glsl::from_local(glsl::frame_around(towards / distance), local)),
@@ -85,15 +100,43 @@ LightTracer::LightTracer(const View& view, const Request& request)
       medium_(view.rays.medium().medium()),
       media_(request.term != Term::caustic && medium_.scattering != glm::vec3(0)),
       surfaces_(request.term != Term::media) {
-  for (const scene::DrawInstance& instance : request.pose.instances) {
-    const auto& draw = view.rays.draws()[static_cast<size_t>(&instance - request.pose.instances.data())];
-    if (draw.material && draw.material->specularSurface())
-      objects_.add(scene::instanceBounds(request.scene, request.pose, instance));
+  for (size_t i = 0; i < request.pose.instances.size(); ++i) {
+    const scene::Material* material = view.rays.draws()[i].material;
+    if (!material || !material->specularSurface()) continue;
+    const scene::Bounds box = scene::instanceBounds(request.scene, request.pose, request.pose.instances[i]);
+    if (box.empty()) continue;
+    objects_.add(box);
+    bodies_.push_back({box.centre(), kWiden * box.radius(), static_cast<uint32_t>(i)});
   }
+  all_ = {objects_.centre(), kWiden * objects_.radius()};
   if (!media_ && !surfaces_) lights_.clear();
+  upTo_.resize(lights_.size());
+  if (bodies_.size() * lights_.size() <= kMostShares)
+    for (size_t i = 0; i < lights_.size(); ++i) upTo_[i] = sharesOf(lights_[i]);
   const size_t pixels = view.pixelCount();
   const size_t films = std::clamp<size_t>(kMostFilmPixels / std::max<size_t>(pixels, 1), 2, 16) / 2 * 2;
   if (present()) films_.assign(films, std::vector<glm::dvec3>(pixels));
+}
+
+/// Returns what upTo_ holds for a light. Half of its paths go to bodies in proportion to the light that their
+/// spheres get, and half to all bodies alike, so that none is left out. Where these spheres are about as
+/// large together as the one around all of them, paths go to that.
+std::vector<float> LightTracer::sharesOf(const glsl::Light& light) const {
+  std::vector<double> measures;
+  double sum = 0;
+  for (const Target& body : bodies_) {
+    measures.push_back(double{measureAround(light, body.centre, body.radius)});
+    sum += measures.back();
+  }
+  if (!(sum > 0 && 2 * sum < double{measureAround(light, all_.centre, all_.radius)})) return {};
+  std::vector<float> upTo;
+  double reached = 0;
+  for (const double measure : measures) {
+    reached += 0.5 * (measure / sum + 1 / static_cast<double>(measures.size()));
+    upTo.push_back(static_cast<float>(std::round(reached * 0x1p24) * 0x1p-24));
+  }
+  upTo.back() = 1;
+  return upTo;
 }
 
 void LightTracer::trace(uint32_t first, uint32_t count, std::vector<Sums>& sums) {
@@ -126,17 +169,26 @@ void LightTracer::trace(uint32_t first, uint32_t count, std::vector<Sums>& sums)
 bool LightTracer::emit(const Sampler& sampler, uint64_t index, Path& path) const {
   const size_t count = lights_.size();
   const glsl::Light& light = lights_[index % count];
+  const std::vector<float>& upTo = upTo_[index % count];
+  const Target* target = &all_;
+  float share = 1;
+  if (!upTo.empty()) {
+    const auto chosen = std::ranges::upper_bound(upTo, sampler.pair(2).y);
+    target = &bodies_[static_cast<size_t>(chosen - upTo.begin())];
+    share = *chosen - (chosen == upTo.begin() ? 0.f : *std::prev(chosen));
+  }
   const float scene = medium_.ball.radius, offset = 0x1p-18f * scene;
-  const Aim aim = aimAt(light, objects_.centre(), 1.001f * objects_.radius(), 4 * scene, sampler.pair(0),
-                        sampler.pair(1));
+  const Aim aim = aimAt(light, target->centre, target->radius, 4 * scene, sampler.pair(0), sampler.pair(1));
   Hit hit;
   if (!view_.rays.nearest(aim.origin + offset * aim.direction, aim.direction, hit)) return false;
   if (!view_.rays.draws()[hit.draw].material->specularSurface()) return false;
+  // What lies before the body counts where it is aimed at itself.
+  if (target->draw != glsl::no_instance && hit.draw != target->draw) return false;
   path.surface = interfaceAt(view_.rays, hit, aim.direction);
   path.direction = aim.direction;
   const glm::vec3& p = path.surface.position;
-  path.flux =
-      glsl::light_point_intensity(light, aim.origin, p, 1) * (aim.measure * static_cast<float>(count));
+  path.flux = glsl::light_point_intensity(light, aim.origin, p, 1) *
+              (aim.measure * static_cast<float>(count) / share);
   path.flux *= glsl::light_fluence(light);
   path.flux *= scene::lightTextureAt(view_.rays.scene(), light, p);
   const glsl::Optics optics = opticsOf(*view_.rays.draws()[hit.draw].material);

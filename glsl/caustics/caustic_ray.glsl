@@ -23,7 +23,7 @@ struct CausticRay {
 // What all rays of one layer share: storage buffer element.
 struct CausticLayer {
   float light;     // index in the list of shadow maps' lights
-  float diameter;  // of the objects, m
+  float diameter;  // of the widest object, m: no way through one is longer
   uint first;      // layer of the first view from the same point
   uint faces;      // shadow_faces_*: how these views share its surroundings
 };

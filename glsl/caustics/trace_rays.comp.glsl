@@ -29,7 +29,9 @@ uniform int light_samples;
 uniform int steps;
 
 const float least_cosine = 1e-4;
-const int end_refinements = 8;
+// Bisections: as many as halve the stride to an eighth of a texel of the scene's map, which are more where the scene reaches far.
+const int least_end_refinements = 8;
+const int most_end_refinements = 24;
 const float shadow_bias = 2.0;  // texel footprints
 
 // Place of what a texel of the scene's map shows, in the view's axes.
@@ -122,7 +124,9 @@ void find_end(SceneMaps maps, ObjectViews objects, inout CausticRay ray) {
     before = t;
   }
   if (behind < 0.0) return;
-  for (int i = 0; i < end_refinements; ++i) {
+  float fine = 0.125 * shadow_footprint(maps.first, length(ray.start - maps.first.origin));
+  for (int i = 0; i < most_end_refinements; ++i) {
+    if (i >= least_end_refinements && behind - before <= fine) break;
     float t = 0.5 * (before + behind);
     int there = place_of(maps, objects, traced, t);
     if (there == place_free) {

@@ -102,6 +102,30 @@ TEST_F(CausticRaysTest, LightThatLeavesABodyBesideAnotherHasTheNormalsOfItsOwn) 
   }
 }
 
+/// Light is searched for where it leaves an object at points over as many metres as the widest object has,
+/// not over the 20 m to another: or a body would lose its folds because of something far away.
+TEST_F(CausticRaysTest, WaysThroughAnObjectAreAsLongAsTheWidestIs) {
+  scene::Scene scene;
+  const int glass = test::addMaterial(scene, test::glass(1.5f));
+  const int wide = test::addMesh(scene, test::finish(test::quad({0, 0, 0}, {2, 0, 0}, {0, 2, 0}, glass)));
+  const int ground = test::addMesh(scene, test::floorPrimitive(2, test::addMaterial(scene)));
+  scene::Pose pose;
+  test::addInstance(scene, pose, wide);
+  test::addInstance(scene, pose, wide, test::at(20, 0, 0, 0.5f));
+  test::addInstance(scene, pose, ground, test::at(0, -1, 0));
+  test::addLight(pose, test::directionalLight({0, 0, -1}, 0));
+  AskingForRays asking(device(), scene, pose);
+  const std::vector<uint32_t> lights{0};
+  const CausticRays made = asking.service.request(lights, {.size = 16, .sceneSize = 16});
+  ASSERT_EQ(made.layers, 1);
+  asking.graph.output(made.rays);
+  asking.graph.prepare(device(), shaders(), asking.pool);
+  asking.graph.execute();
+  glsl::CausticLayer layer{};
+  asking.graph.buffer(made.layerLights).read(0, &layer, sizeof(layer));
+  EXPECT_NEAR(double(layer.diameter), std::sqrt(8.0), 1e-5);
+}
+
 /// Rays of a texel take next to no memory: what is too much is their layers, one for each point on a light.
 TEST_F(CausticRaysTest, MoreLayersThanTheDeviceHasAreRefusedAsWhatTheyAre) {
   scene::Scene scene;

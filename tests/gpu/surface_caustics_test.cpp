@@ -245,6 +245,24 @@ TEST_F(SurfaceCausticsTest, AFinerSearchLosesNoLight) {
   }
 }
 
+/// Under the floor, which ends 2.5 m from its middle, goes on another one to 600 m: the points at which rays
+/// are searched for their ends lie 13 m apart then. Bisected eight times they are 5 cm apart, and photons
+/// that lie more than their width of 1 cm above or below the floor do not light it: half of them.
+TEST_F(SurfaceCausticsTest, ASceneThatReachesFarHasTheCausticsOfWhatIsNear) {
+  scene::Scene scene = asset("glass_sphere");
+  scene.medium = {};
+  const auto brightness = [&] {
+    render::Renderer renderer(device(), scene);
+    return mean(picture(renderer, settings(width, height, Term::caustic, {technique("surface_caustics")}),
+                        scene::lookAt({0.6f, 4, 0.01f}, {0.6f, 0, 0}, 0.3f)));
+  };
+  const double near = brightness();
+  ASSERT_GT(near, 0);
+  test::show(scene, test::quad({0, -0.01f, 0}, {1200, 0, 0}, {0, 0, -1200},
+                               test::addMaterial(scene, test::lambertian(0.5f))));
+  EXPECT_NEAR(brightness() / near, 1, 0.03);
+}
+
 /// All of the floor is seen by the light. Where the ring's caustic is thinner than a pixel, photons on the
 /// screen are wider than those in the map: a kernel has at least a pixel, or a texel.
 TEST_F(SurfaceCausticsTest, CausticMapsShowWhatPhotonsOnTheScreenDo) {

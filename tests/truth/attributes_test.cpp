@@ -1,4 +1,4 @@
-// Every vertex attribute on geometry that is rigid, skinned, morphed, both, instanced or made anew: the
+// Every vertex attribute on geometry that is rigid, skinned, morphed, both, instanced or made on the way: the
 // picture's surfaces are the reference's.
 #include <gtest/gtest.h>
 

@@ -123,7 +123,7 @@ TEST_F(FarTest, EveryTechniqueIsTheSameAnywhere) {
   }
 }
 
-/// Fog in a room, smoke that the scene's file places, and surfaces that are made anew for every time.
+/// Fog in a room, smoke that the scene's file places, and surfaces that are made for every time.
 TEST_F(FarTest, MediaAndMetaballsAreTheSameAnywhere) {
   const std::vector<render::TechniqueUse> techniques = {quick("hard_shadow_map"), quick("airlight")};
   for (const char* name : {"cornell_box", "smoke", "metaballs"}) {

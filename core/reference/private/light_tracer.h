@@ -28,6 +28,13 @@ class LightTracer {
  private:
   struct Film;
   struct Path;
+  /// A sphere that light is sent to: around one specular object, or around all.
+  struct Target {
+    glm::vec3 centre{0};
+    float radius = 0;
+    uint32_t draw = glsl::no_instance;  ///< the one that it is around; no_instance: all
+  };
+  std::vector<float> sharesOf(const glsl::Light& light) const;
   bool emit(const Sampler& sampler, uint64_t index, Path& path) const;
   void follow(const Path& path, const Sampler& sampler, Film& film) const;
   void refract(const Path& path, const glsl::Optics& optics, const glm::vec3& flux,
@@ -48,7 +55,12 @@ class LightTracer {
   glm::dvec2 spacing_;  ///< of pixels at depth 1, along x and y
   std::vector<glsl::Light> lights_;
   glsl::Medium medium_;
-  scene::Bounds objects_;  ///< specular ones
+  scene::Bounds objects_;       ///< specular ones
+  std::vector<Target> bodies_;  ///< each of them
+  Target all_;                  ///< all of them
+  /// For each light the share of its paths that go to one of the bodies or those before it, whole numbers of
+  /// the steps of random numbers, 2^-24; none: all paths go to all_.
+  std::vector<std::vector<float>> upTo_;
   bool media_, surfaces_;
   std::vector<std::vector<glm::dvec3>> films_;
 };

@@ -337,6 +337,30 @@ TEST(ReferenceCaustic, EnergyThroughASphereIsWhatFresnelLeaves) {
   }
 }
 
+/// A second ball, 200 m away, sends no light here. Of paths to the sphere around both two in a quarter of a
+/// million would meet the first one under the sun, so that nothing would be known of its light; of paths to
+/// each a sixth meets it, whose noise is 0.5 % in one picture over another.
+TEST(ReferenceCaustic, ABodyFarAwayLeavesTheLightOfAnotherAsItIs) {
+  const auto flux = [](uint32_t type, bool second) {
+    World world;
+    world.addQuad({0, 0, 0}, {4, 0, 0}, {0, 0, -4}, world.addMaterial(vec3(1)));
+    const int ball = world.addMesh(World::sphere(64, addClearGlass(world, 1.5f)));
+    const auto at = [](float x) {
+      return glm::translate(glm::mat4(1), vec3(x, 1, 0)) * glm::scale(glm::mat4(1), vec3(0.3f));
+    };
+    world.addInstance(ball, at(0));
+    if (second) world.addInstance(ball, at(200));
+    world.addLight(type, {0, 3, 0}, {0, -1, 0}, vec3(2));
+    world.camera = scene::lookAt({0, 4, 5}, {0, 0, 0}, 0.9f);
+    return causticFlux(world, 64);
+  };
+  for (const uint32_t type : {glsl::light_directional, glsl::light_point}) {
+    const double alone = flux(type, false);
+    ASSERT_GT(alone, 0);
+    EXPECT_NEAR(flux(type, true) / alone, 1, 0.02) << type;
+  }
+}
+
 /// A lamp in the middle of a ball of glass: its light passes the surface straight, after half a metre that
 /// absorbs, and that no medium fills.
 TEST(ReferenceCaustic, LightFromWithinABodyIsAbsorbedThereAndMeetsNoMedium) {

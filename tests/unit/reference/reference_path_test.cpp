@@ -297,7 +297,7 @@ TEST(ReferencePath, SameBitsWhateverTheThreadsAndInterruptions) {
     return true;
   };
   EXPECT_TRUE(sameBits(whole.image, render(request).image));
-  EXPECT_GT(first, 48);  // did not start anew
+  EXPECT_GT(first, 48);  // did not start over
 }
 
 TEST(ReferencePath, ContentHashSeesTheBounces) {
