@@ -190,7 +190,8 @@ int runRender(const RenderArguments& options) {
   checkShaderFolder(options.shaders);
   for (const fs::path& file : {options.out, options.stats, options.graph})
     if (!file.empty()) checkWritable(file);
-  checkApart({options.out, options.stats, options.graph}, {options.scene.scene, options.scene.environment});
+  checkApart({options.out, options.stats, options.graph},
+             {options.scene.scene, options.scene.environment, options.scene.grid});
   const auto frames = parseFrames(options.frames);
   const TechniqueRegistry registry(TechniqueRegistry::defaultFolders(), warn);
   render::Settings settings;

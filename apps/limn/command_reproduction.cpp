@@ -29,6 +29,9 @@ int runReproduction(const ReproductionArguments& options) {
     throw Error("reproduction.claims was not built or installed with limn; name a file with --claims");
   std::vector<fs::path> files;
   for (const fs::path& folder : options.results) files.push_back(folder / "results.jsonl");
+  std::vector<fs::path> inputs = files;
+  inputs.push_back(file);
+  checkApart({options.out}, inputs);
   const std::vector<bench::Row> rows = bench::readRows(files);
   const bench::Claims claims = bench::readClaims(file);
   const std::string page =
@@ -46,8 +49,8 @@ Action addReproductionCommand(CLI::App& command) {
   auto options = std::make_shared<ReproductionArguments>();
   command
       .add_option("results", options->results,
-                  "Result folders of limn bench (its --out); of good rows that several hold, those of the "
-                  "last one count")
+                  "Result folders of limn bench (its --out); of good rows of one machine that several hold, "
+                  "those of the last one count")
       ->required();
   command.add_option("-o,--out", options->out, "Markdown file")->required();
   command.add_option("--claims", options->claims,

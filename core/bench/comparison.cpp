@@ -95,7 +95,7 @@ const Row* quickest(const Table& table, const std::string& technique, const Metr
 std::optional<ReferenceTime> referenceTime(const Row& row) {
   const Metrics& e = row.error;
   if (!isTimed(row) || !row.cost.software || row.what.timeWidth > 0 || row.what.aa > 1 ||
-      !row.referenceSeconds || !e.noise_floor || *e.noise_floor <= 0)
+      row.cost.framesPerPicture > 1 || !row.referenceSeconds || !e.noise_floor || *e.noise_floor <= 0)
     return std::nullopt;
   const double sigma = *e.noise_floor / 3, ms = 1000 * *row.referenceSeconds;
   const double least = 0.25 * sigma * sigma, own = e.rmse * e.rmse - sigma * sigma;

@@ -98,10 +98,10 @@ std::pair<int, int> parseSize(const TomlSection& section, const toml::node& node
 std::vector<std::pair<int, int>> parseSizes(const TomlSection& suite) {
   const char* key = keyInSuite(questionField("size"));
   const toml::node& node = suite.require(key);
-  if (!node.is_array()) return {parseSize(suite, node, key)};
-  if (node.as_array()->empty()) suite.fail(node, fmt::format("'{}' is an empty list", key));
+  const toml::array* elements = suite.list(node, key);
+  if (elements == nullptr) return {parseSize(suite, node, key)};
   std::vector<std::pair<int, int>> sizes;
-  for (const toml::node& element : *node.as_array()) sizes.push_back(parseSize(suite, element, key));
+  for (const toml::node& element : *elements) sizes.push_back(parseSize(suite, element, key));
   return sizes;
 }
 

@@ -49,6 +49,8 @@ Change compareRows(const Row& before, const Row& now, const RegressionOptions& o
   if (change.elsewhere) return change;
   const FrameTime &earlier = before.cost.frameMs, &later = now.cost.frameMs;
   if (earlier.samples.empty() || later.samples.empty()) return change;
+  change.oneFrame = earlier.samples.size() == 1 || later.samples.size() == 1;
+  if (change.oneFrame) return change;
   change.time = ratioOfMedians({later.samples, later.turns}, {earlier.samples, earlier.turns});
   change.slower = change.time.low > 1 + options.drift;
   change.faster = change.time.high < 1 / (1 + options.drift);
@@ -118,6 +120,8 @@ std::string toMarkdown(const Regression& regression) {
       count(&Change::faster), count(&Change::better), regression.onlyBefore, regression.onlyNow);
   if (const auto elsewhere = count(&Change::elsewhere); elsewhere > 0)
     text += fmt::format("; times of {} not compared, which two machines measured", elsewhere);
+  if (const auto single = count(&Change::oneFrame); single > 0)
+    text += fmt::format("; times of {} not compared, of which one frame was timed", single);
   if (const auto others = count(&Change::otherFiles); others > 0)
     text += fmt::format("; the scenes of {} have changed in between", others);
   if (const auto others = count(&Change::otherReference); others > 0)

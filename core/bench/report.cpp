@@ -8,6 +8,7 @@
 #include <optional>
 #include <set>
 #include <string_view>
+#include <utility>
 
 #include "core/base/error.h"
 #include "core/base/file.h"
@@ -302,10 +303,16 @@ ReportData reportData(std::span<const Row> rows, const std::filesystem::path& fo
   json["reduction"] = pictures.reduction();
   json["stability"] = stability(folder);
   // ASCII alone: no line separator (U+2028) or mark of direction stands in the page as itself.
-  std::string text = json.dump(-1, ' ', true, Json::error_handler_t::replace);
-  for (std::size_t i = 0; (i = text.find('<', i)) != std::string::npos; ++i)
-    text.replace(i, 1, "\\u003c");  // "</script>" and "<!--" would end or change the element
-  return {.json = text, .pictures = pictures.elements()};
+  const std::string text = json.dump(-1, ' ', true, Json::error_handler_t::replace);
+  std::string escaped;
+  escaped.reserve(text.size());
+  for (const char c : text) {
+    if (c == '<')
+      escaped += "\\u003c";  // "</script>" and "<!--" would end or change the element
+    else
+      escaped += c;
+  }
+  return {.json = std::move(escaped), .pictures = pictures.elements()};
 }
 
 void writeReport(std::span<const Row> rows, const std::filesystem::path& folder) {

@@ -62,12 +62,6 @@ std::vector<Found> find(std::span<const Table> tables, const std::vector<std::st
   return found;
 }
 
-/// As in tables, a row of an earlier version, which does not say its machine or driver, stands with any.
-bool sameMachine(const Row& a, const Row& b) {
-  return a.cost.renderer == b.cost.renderer && mayBeEqual(a.cost.machine, b.cost.machine) &&
-         mayBeEqual(a.cost.driver, b.cost.driver);
-}
-
 struct Sides {
   Found slow, fast;
 };

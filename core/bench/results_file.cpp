@@ -9,11 +9,12 @@
 #include <cstdint>
 #include <cstring>
 #include <iterator>
-#include <set>
+#include <map>
 #include <utility>
 
 #include "core/base/error.h"
 #include "core/base/file.h"
+#include "core/bench/private/comparison.h"
 
 namespace limn::bench {
 
@@ -67,14 +68,18 @@ std::vector<Row> readRows(std::span<const std::filesystem::path> paths) {
   std::size_t lines = 0;
   for (const std::filesystem::path& path : paths) {
     std::vector<Row> later = readRows(path);
-    std::set<std::string> measuredAgain;
+    std::map<std::string, const Row*> measuredAgain;
     const std::size_t before = lines;
     for (Row& row : later) {
       row.line += before;
       lines = std::max(lines, row.line);
-      if (row.failure.empty()) measuredAgain.insert(row.key);
+      if (row.failure.empty()) measuredAgain.emplace(row.key, &row);
     }
-    std::erase_if(rows, [&](const Row& row) { return measuredAgain.contains(row.key); });
+    // Rows of another machine stay: both sides of a comparison are of one.
+    std::erase_if(rows, [&](const Row& row) {
+      const auto again = measuredAgain.find(row.key);
+      return again != measuredAgain.end() && sameMachine(row, *again->second);
+    });
     std::ranges::move(later, std::back_inserter(rows));
   }
   return rows;

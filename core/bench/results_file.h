@@ -18,7 +18,7 @@ namespace limn::bench {
 LIMN_API std::vector<Row> readRows(const std::filesystem::path& path);
 
 /// Returns the rows of several files, of which later ones are newer: Row::line goes on from file to file. Of
-/// a key that several hold the last good row counts.
+/// a key that several hold on one machine the last good row counts.
 LIMN_API std::vector<Row> readRows(std::span<const std::filesystem::path> paths);
 
 class LIMN_API ResultsFile {

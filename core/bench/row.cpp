@@ -64,6 +64,7 @@ Json costToJson(const Cost& cost) {
   if (!cost.driver.empty()) json["driver"] = cost.driver;
   if (!cost.machine.empty()) json["machine"] = cost.machine;
   if (cost.lights > 0) json["lights"] = cost.lights;
+  if (cost.framesPerPicture > 1) json["frames_per_picture"] = cost.framesPerPicture;
   json["quality_parameters"] = cost.qualityParameters;
   return json;
 }
@@ -97,6 +98,7 @@ Cost costFromJson(const Json& json) {
   cost.driver = json.value("driver", "");
   cost.machine = json.value("machine", "");
   cost.lights = json.value("lights", 0);
+  cost.framesPerPicture = json.value("frames_per_picture", 1);
   cost.qualityParameters = json.value("quality_parameters", std::vector<std::string>{});
   cost.details = json.dump();
   return cost;

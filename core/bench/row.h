@@ -43,9 +43,10 @@ struct Cost {
   CostSplit split;                 ///< of a run of its own, with pass timing
   std::optional<BoundTime> bound;  ///< where the suite asks for it and the technique has one
   std::int64_t memoryBytes = 0;
-  std::string driver;   ///< vendor and version, as OpenGL says; "" in rows of earlier versions
-  std::string machine;  ///< machineName(); "" in rows of earlier versions
-  int lights = 0;       ///< that the picture asks for; 0: not recorded
+  std::string driver;        ///< vendor and version, as OpenGL says; "" in rows of earlier versions
+  std::string machine;       ///< machineName(); "" in rows of earlier versions
+  int lights = 0;            ///< that the picture asks for; 0: not recorded
+  int framesPerPicture = 1;  ///< that the error is of, with aa or a history; times are those of one
   std::vector<std::string> qualityParameters;  ///< "technique.parameter" that trade error for time
   /// Everything `limn render --stats` says, as JSON text; "" if there is nothing more.
   std::string details;

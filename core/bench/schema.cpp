@@ -197,12 +197,8 @@ Json fieldSchema(const QuestionField& field) {
     case QuestionKind::texts:
       return listOf({{"type", "string"}}, field.doc);
     case QuestionKind::real:
+    case QuestionKind::optionalReal:  // where it is not set, the row lacks it
       return number(field.doc);
-    case QuestionKind::optionalReal: {
-      Json json = number(field.doc);
-      json["type"] = {"number", "null"};
-      return json;
-    }
     case QuestionKind::integer:
       return integer(field.doc);
     case QuestionKind::coefficient: {

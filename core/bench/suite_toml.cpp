@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <iterator>
 #include <set>
 #include <tuple>
 
@@ -14,6 +15,7 @@
 #include "core/bench/private/toml_nesting.h"
 #include "core/bench/private/toml_section.h"
 #include "core/bench/suite.h"
+#include "core/question/question_fields.h"
 #include "core/question/technique_names.h"
 #include "core/question/term.h"
 #include "core/reference/reference.h"
@@ -22,6 +24,21 @@ namespace limn::bench {
 namespace {
 
 constexpr std::size_t kMaxCases = 100000;
+// Bytes of the texts of all cases: each holds those of its scene and its parameters, however long.
+constexpr std::size_t kMaxText = std::size_t{256} << 20;
+constexpr const char* kTooMuchText = "more than 256 MiB of text in all combinations";
+
+/// The bytes that a parameter takes in each case.
+std::size_t bytesOf(const std::string& name, const std::string& value) {
+  return sizeof(std::pair<std::string, std::string>) + name.size() + value.size();
+}
+
+/// The bytes that a case takes beside its question.
+std::size_t bytesOf(const Case& c) {
+  std::size_t bytes = c.technique.size() + c.title.size();
+  for (const auto& [name, value] : c.parameters) bytes += bytesOf(name, value);
+  return bytes;
+}
 
 /// A number or "all"; 0 where nothing is said of them.
 int parseInterfaces(const TomlSection& section) {
@@ -112,6 +129,7 @@ struct SweptTechnique {
   std::string name, title;
   bool baseline = false;
   std::vector<std::vector<std::pair<std::string, std::string>>> settings;  // all combinations
+  std::size_t text = 0;                                                    // of these, bytes
 };
 
 SweptTechnique parseTechnique(const std::string& file, const toml::table& table) {
@@ -119,7 +137,8 @@ SweptTechnique parseTechnique(const std::string& file, const toml::table& table)
   SweptTechnique technique{section.text(section.require("technique"), "technique"),
                            section.text("label", ""),
                            section.boolean("baseline", false),
-                           {{}}};
+                           {{}},
+                           0};
   if (technique.name == kSeparationFloor)
     section.fail(*section.find("technique"),
                  fmt::format("{0} is no technique; the suite's key {0} adds its rows", kSeparationFloor));
@@ -149,6 +168,10 @@ SweptTechnique parseTechnique(const std::string& file, const toml::table& table)
     }
     if (technique.settings.size() * values.size() > kMaxCases)
       section.fail(node, fmt::format("more than {} combinations", kMaxCases));
+    std::size_t added = 0;
+    for (const std::string& value : values) added += bytesOf(name, value);
+    technique.text = technique.text * values.size() + technique.settings.size() * added;
+    if (technique.text > kMaxText) section.fail(node, kTooMuchText);
     decltype(technique.settings) combined;
     for (const auto& setting : technique.settings) {
       for (const std::string& value : values) {
@@ -161,27 +184,42 @@ SweptTechnique parseTechnique(const std::string& file, const toml::table& table)
   return technique;
 }
 
-/// All cases that ask one question of every technique.
-void addCases(const Case& base, const std::vector<SweptTechnique>& techniques, const std::vector<bool>& modes,
-              bool separationFloor, std::vector<Case>& cases) {
-  if (cases.size() > kMaxCases) return;  // refused below; no need to fill the memory first
-  if (separationFloor && base.term == name(Term::direct)) {
+std::vector<SweptTechnique> parseTechniques(const TomlSection& suite) {
+  std::vector<SweptTechnique> techniques;
+  std::size_t settings = 0, text = 0;
+  for (const toml::table* table : suite.tables("techniques")) {
+    techniques.push_back(parseTechnique(suite.file(), *table));
+    settings += techniques.back().settings.size();
+    text += techniques.back().text;
+    if (settings > kMaxCases)
+      failAt(suite.file(), table->source(), fmt::format("more than {} combinations", kMaxCases));
+    if (text > kMaxText) failAt(suite.file(), table->source(), kTooMuchText);
+  }
+  return techniques;
+}
+
+/// All cases that ask one question of every technique, one after the other.
+template <class Add>
+void forEachCase(const Case& question, const std::vector<SweptTechnique>& techniques,
+                 const std::vector<bool>& modes, bool separationFloor, Add add) {
+  Case c = question;
+  const auto addModes = [&] {
     for (const bool dynamic : modes) {
-      cases.push_back(base);
-      cases.back().technique = kSeparationFloor;
-      cases.back().dynamic = dynamic;
+      c.dynamic = dynamic;
+      add(c);
     }
+  };
+  if (separationFloor && c.term == name(Term::direct)) {
+    c.technique = kSeparationFloor;
+    addModes();
   }
   for (const SweptTechnique& technique : techniques) {
+    c.technique = technique.name;
+    c.title = technique.title;
+    c.baseline = technique.baseline;
     for (const auto& setting : technique.settings) {
-      for (const bool dynamic : modes) {
-        cases.push_back(base);
-        cases.back().technique = technique.name;
-        cases.back().parameters = setting;
-        cases.back().title = technique.title;
-        cases.back().baseline = technique.baseline;
-        cases.back().dynamic = dynamic;
-      }
+      c.parameters = setting;
+      addModes();
     }
   }
 }
@@ -191,18 +229,21 @@ Suite parse(std::string_view text, const std::string& file, bool mayInclude);
 /// The cases of other suites, files beside this one that include none themselves.
 std::vector<Case> includedCases(const TomlSection& suite, bool mayInclude) {
   std::vector<Case> cases;
+  std::set<std::string> files, keys;
   if (!mayInclude && suite.find("include") != nullptr)
     suite.fail(*suite.find("include"), "an included suite includes others; one level is enough");
   for (const std::string& name : suite.texts("include", {})) {
+    if (!files.insert(name).second) continue;
     const std::filesystem::path path = std::filesystem::path(suite.file()).parent_path() / name;
     if (std::filesystem::path(name).filename() != name)
       suite.fail(*suite.find("include"),
                  fmt::format("'{}' is not the name of a file beside the suite", name));
     const Suite included = parse(readTextFile(path, 1 << 24), path.string(), false);
-    cases.insert(cases.end(), included.cases.begin(), included.cases.end());
+    std::ranges::copy_if(included.cases, std::back_inserter(cases),
+                         [&](const Case& c) { return keys.insert(rowKey(c, "")).second; });
+    if (cases.size() > kMaxCases)
+      suite.fail(*suite.find("include"), fmt::format("more than {} cases", kMaxCases));
   }
-  std::set<std::string> keys;
-  std::erase_if(cases, [&](const Case& c) { return !keys.insert(rowKey(c, "")).second; });
   return cases;
 }
 
@@ -223,12 +264,11 @@ void addOwnCases(const TomlSection& suite, std::vector<Case>& cases) {
   const auto sizes = parseSizes(suite);
   const std::vector<bool> modes = parseModes(suite);
   const bool separationFloor = suite.boolean("separation_floor", false);
-  std::vector<SweptTechnique> techniques;
-  for (const toml::table* table : suite.tables("techniques"))
-    techniques.push_back(parseTechnique(file, *table));
+  const std::vector<SweptTechnique> techniques = parseTechniques(suite);
 
   std::vector<const char*> sceneKeys = questionKeys();
   sceneKeys.insert(sceneKeys.end(), {"fps", "max_masked_share"});
+  std::size_t text = 0;
   for (const toml::table* table : suite.tables("scenes")) {
     const TomlSection scene(file, *table, "[[scenes]]", sceneKeys);
     base.fps = scene.real("fps", 0.0, 0.0, 1e6);
@@ -236,9 +276,14 @@ void addOwnCases(const TomlSection& suite, std::vector<Case>& cases) {
     base.reference = referenceOf(references, parseTerm(readTerm(scene, term)));
     forEachQuestion(scene, sizes, term, [&](const SceneQuestion& question) {
       static_cast<SceneQuestion&>(base) = question;
-      addCases(base, techniques, modes, separationFloor, cases);
-      if (cases.size() > kMaxCases)
-        failAt(file, table->source(), fmt::format("more than {} cases", kMaxCases));
+      const std::size_t asked = questionText(question).size();
+      forEachCase(base, techniques, modes, separationFloor, [&](const Case& c) {
+        text += asked + bytesOf(c);
+        if (cases.size() == kMaxCases)
+          failAt(file, table->source(), fmt::format("more than {} cases", kMaxCases));
+        if (text > kMaxText) failAt(file, table->source(), kTooMuchText);
+        cases.push_back(c);
+      });
     });
   }
   checkReference(suite, std::span(cases).subspan(before));

@@ -77,12 +77,21 @@ bool TomlSection::boolean(const char* key, bool otherwise) const {
   return *value;
 }
 
+const toml::array* TomlSection::list(const toml::node& node, const char* key) const {
+  const toml::array* array = node.as_array();
+  if (array == nullptr) return nullptr;
+  if (array->empty()) fail(node, fmt::format("'{}' is an empty list", key));
+  if (array->size() > kMostListed)
+    fail(node, fmt::format("'{}' lists more than {} values", key, kMostListed));
+  return array;
+}
+
 std::vector<double> TomlSection::reals(const char* key, double otherwise, double low, double high) const {
   const toml::node* node = find(key);
-  if (node == nullptr || !node->is_array()) return {real(key, otherwise, low, high)};
-  if (node->as_array()->empty()) fail(*node, fmt::format("'{}' is an empty list", key));
+  const toml::array* elements = node == nullptr ? nullptr : list(*node, key);
+  if (elements == nullptr) return {real(key, otherwise, low, high)};
   std::vector<double> values;
-  for (const toml::node& element : *node->as_array()) {
+  for (const toml::node& element : *elements) {
     const auto value = element.value<double>();
     if (!value || !element.is_number() || !(*value >= low && *value <= high))
       fail(element, fmt::format("'{}' must be numbers in {}..{}", key, low, high));
@@ -94,10 +103,10 @@ std::vector<double> TomlSection::reals(const char* key, double otherwise, double
 std::vector<std::string> TomlSection::texts(const char* key, std::vector<std::string> otherwise) const {
   const toml::node* node = find(key);
   if (node == nullptr) return otherwise;
-  if (!node->is_array()) return {text(*node, key)};
-  if (node->as_array()->empty()) fail(*node, fmt::format("'{}' is an empty list", key));
+  const toml::array* elements = list(*node, key);
+  if (elements == nullptr) return {text(*node, key)};
   std::vector<std::string> values;
-  for (const toml::node& element : *node->as_array()) values.push_back(text(element, key));
+  for (const toml::node& element : *elements) values.push_back(text(element, key));
   return values;
 }
 

@@ -210,6 +210,7 @@ bench::Measurement BenchSession::measure(const bench::Case& c) {
   loaded.renderer.setTime(loaded.view.time, loaded.view.animation);
   stats.scene = c.scene;
   stats.framesPerPicture = c.aa * c.aa + render::historyOf(settings.term, settings.techniques) - 1;
+  result.cost.framesPerPicture = stats.framesPerPicture;
   result.cost.renderer = stats.renderer;
   result.cost.backend = stats.backend;
   result.cost.timer = frame::name(stats.timer);

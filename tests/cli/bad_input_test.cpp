@@ -142,7 +142,8 @@ TEST_F(BadOutput, DevicesAndPipesStayWhatTheyAre) {
 
 /// What is read would be lost, or one of two results.
 TEST_F(BadOutput, NoFileIsWrittenTwiceOrReadAsWell) {
-  const fs::path picture = folder_ / "a.png", map = folder_ / "map.exr";
+  const fs::path picture = folder_ / "a.png", map = folder_ / "map.exr", grid = folder_ / "cloud.vdb",
+                 rows = folder_ / "results.jsonl", claims = folder_ / "a.claims";
   const auto refused = [](const std::vector<std::string>& arguments, const std::string& name) {
     expectRefused(limn(arguments), 2, {name, "another argument names the same file"});
   };
@@ -155,6 +156,10 @@ TEST_F(BadOutput, NoFileIsWrittenTwiceOrReadAsWell) {
   refused({"environment", map, "--overlay", map}, "map.exr");
   ASSERT_EQ(write("render", picture).status, 0);
   refused({"compare", picture, map, "--diff", picture}, "a.png");
+  refused({"render", kCornellBox, "--grid", grid, "--out", picture, "--stats", grid}, "cloud.vdb");
+  refused({"explain-cost", kCornellBox, "--grid", grid, "--json", grid}, "cloud.vdb");
+  for (const fs::path& file : {rows, claims})
+    refused({"reproduction", folder_.path(), "--claims", claims, "--out", file}, file.filename());
   EXPECT_EQ(contents(map), before);
 }
 

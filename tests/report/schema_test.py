@@ -106,3 +106,5 @@ for file in sorted((options.root / "docs" / "results").glob("*/*/results.jsonl")
 broken = dict(rows[0], technique=3)
 if row.is_valid(broken) or row.is_valid({key: value for key, value in rows[0].items() if key != "error"}):
     sys.exit("FAILED: rows that are none pass")
+if row.is_valid(dict(rows[0], medium={"g": None})):
+    sys.exit("FAILED: a null passes that limn does not read")

@@ -31,6 +31,13 @@ inline bool mayBeEqual(const std::string& a, const std::string& b) {
   return a == b || a.empty() || b.empty();
 }
 
+/// Returns whether one renderer, machine and driver may have measured both rows. As in tables, a row of an
+/// earlier version, which does not say its machine or driver, stands with any.
+inline bool sameMachine(const Row& a, const Row& b) {
+  return a.cost.renderer == b.cost.renderer && mayBeEqual(a.cost.machine, b.cost.machine) &&
+         mayBeEqual(a.cost.driver, b.cost.driver);
+}
+
 /// Returns the milliseconds of maps, filters and the technique's passes.
 LIMN_API double shadowMs(const Row& row);
 
@@ -79,7 +86,8 @@ struct ReferenceTime {
 /// samples falls that way. e^2 is the row's squared RMSE without sigma^2, or (sigma / 2)^2 where less
 /// remains: the smallest meaningful difference of two numbers that are known to a few percent. Returns
 /// nullopt where time or noise is unknown, where the row's frames are a GPU's, and where errors and times
-/// belong to different pictures: of another size, or of several frames where the time is that of one (aa).
+/// belong to different pictures: of another size, or of several frames where the time is that of one (aa, a
+/// history).
 LIMN_API std::optional<ReferenceTime> referenceTime(const Row& row);
 
 /// Returns a name of the row for people: its title, or settingsName().

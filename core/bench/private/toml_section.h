@@ -3,12 +3,17 @@
 
 #include <toml++/toml.h>
 
+#include <cstddef>
 #include <string>
 #include <vector>
 
 #include "core/question/question_fields.h"
 
 namespace limn::bench {
+
+/// The most values of a list. A suite may have no more cases, and each size, camera or light gives at least
+/// one.
+inline constexpr std::size_t kMostListed = 100'000;
 
 /// Throws UsageError "FILE:LINE:COLUMN: message".
 [[noreturn]] void failAt(const std::string& file, const toml::source_region& where,
@@ -32,6 +37,8 @@ class TomlSection {
   int integer(const char* key, int otherwise, int low, int high) const;
   double real(const char* key, double otherwise, double low, double high) const;
   bool boolean(const char* key, bool otherwise) const;
+  /// Returns the list that the node is, of 1 to kMostListed values; null where it is none.
+  const toml::array* list(const toml::node& node, const char* key) const;
   /// Returns the numbers of a key that holds one number or a list.
   std::vector<double> reals(const char* key, double otherwise, double low, double high) const;
   /// Returns the texts of a key that holds one text or a list.

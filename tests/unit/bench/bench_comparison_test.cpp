@@ -32,6 +32,9 @@ TEST(BenchComparison, ReferencesTakeLongerForLess) {
   row.what.aa = 2;  // the error of four frames, the time of one
   EXPECT_FALSE(referenceTime(row));
   row.what.aa = 1;
+  row.cost.framesPerPicture = 16;  // of a history: likewise
+  EXPECT_FALSE(referenceTime(row));
+  row.cost.framesPerPicture = 1;
   row.error.noise_floor = 0;  // no noise, no Monte Carlo
   EXPECT_FALSE(referenceTime(row));
   row.error.noise_floor = 0.03;

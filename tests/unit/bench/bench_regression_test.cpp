@@ -175,6 +175,21 @@ TEST(Regression, TimesOfTwoMachinesAreNotCompared) {
   EXPECT_TRUE(compareResults(before, now).changes[0].worse) << "errors are";
 }
 
+/// Nothing says how far one frame scatters.
+TEST(Regression, TimesOfOneFrameAreNotCompared) {
+  std::vector<Row> before = {row("a", 0.1, 5)}, now = {row("a", 0.1, 10)};
+  EXPECT_TRUE(compareResults(before, now).found());
+  now[0].cost.frameMs.samples = {10};
+  const Regression regression = compareResults(before, now);
+  EXPECT_FALSE(regression.found());
+  EXPECT_EQ(toMarkdown(regression),
+            "1 rows compared: 0 slower, 0 worse, 0 failed, 0 faster, 0 better; 0 only before, 0 only now; "
+            "times of 1 not compared, of which one frame was timed\n");
+  EXPECT_FALSE(compareResults(now, before).changes[0].faster);
+  now[0].error.rmse = 0.2;
+  EXPECT_TRUE(compareResults(before, now).changes[0].worse) << "errors are";
+}
+
 TEST(Regression, ScenesThatHaveChangedAreNamed) {
   std::vector<Row> before = {row("a", 0.1, 5), row("b", 0.1, 5)}, now = {row("a", 0.2, 5), row("b", 0.1, 5)};
   for (Row* known : {&before[0], &before[1], &now[1]}) known->provenance.scene = "files";

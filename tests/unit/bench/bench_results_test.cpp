@@ -39,6 +39,7 @@ TEST_F(BenchResults, RowsSurviveJson) {
   played.bound = true;
   Row row = exampleRow(played);
   row.cost.bound = BoundTime{.own = {3, 4}, .bound = {2, 2.5}, .turns = 2};
+  row.cost.framesPerPicture = 16;
   const std::string line = toJson(row);
   EXPECT_EQ(line.find('\n'), std::string::npos);
   const Row back = rowFromJson(line);
@@ -61,6 +62,7 @@ TEST_F(BenchResults, RowsSurviveJson) {
   EXPECT_EQ(back.cost.bound->bound, row.cost.bound->bound);
   EXPECT_EQ(back.cost.bound->turns, 2);
   EXPECT_EQ(back.cost.memoryBytes, row.cost.memoryBytes);
+  EXPECT_EQ(back.cost.framesPerPicture, 16);
   EXPECT_NE(back.cost.details.find("shadow map"), std::string::npos);
   EXPECT_EQ(toJson(back), line);
 }
@@ -223,6 +225,24 @@ TEST_F(BenchResults, RowsOfLaterFilesAreNewer) {
   EXPECT_EQ(std::ranges::count_if(tables[0].rows, isNew), 1) << "of program 2";
   const std::vector<fs::path> twice = {older, older};
   EXPECT_EQ(readRows(twice).size(), 2u) << "good rows take the place of those of their keys";
+}
+
+/// A comparison has both sides of one machine: what another one measured of a side leaves it that pair.
+TEST_F(BenchResults, RowsOfAnotherMachineInALaterFileTakeNoPlace) {
+  const fs::path first = folder_ / "first.jsonl", second = folder_ / "second.jsonl";
+  Row row = exampleRow(exampleCase());
+  row.cost.machine = "one";
+  ResultsFile(first).append(row);
+  row.cost.machine = "two";
+  ResultsFile(second).append(row);
+  const std::vector<fs::path> files = {first, second};
+  EXPECT_EQ(readRows(files).size(), 2u);
+  row.cost.machine = "one";
+  ResultsFile(second).append(row);
+  EXPECT_EQ(readRows(files).size(), 1u);
+  row.cost.driver = "newer";
+  ResultsFile(second).append(row);
+  EXPECT_EQ(readRows(files).size(), 1u) << "the first row does not say its driver";
 }
 
 TEST_F(BenchResults, TablesAreWritten) {

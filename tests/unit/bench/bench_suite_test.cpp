@@ -207,6 +207,32 @@ TEST(BenchSuite, RefusesExplosions) {
   expectUsageError(text, "combinations");
 }
 
+/// Whatever is too much is refused before the memory is filled with it.
+TEST(BenchSuite, RefusesMoreThanMemoryHolds) {
+  const std::string head = "name='a'\nsizes='8x8'\n[[scenes]]\nscene='b'\n",
+                    technique = "[[techniques]]\ntechnique='c'\n";
+  const auto listed = [](int count) {
+    std::string list = "[1";
+    for (int i = 2; i <= count; ++i) list.append(",").append(std::to_string(i));
+    return list + "]";
+  };
+  const std::string many = listed(65), p = listed(300), q = listed(200);
+  // The techniques' combinations together.
+  const std::string sweep = "[techniques.parameters]\np=" + p + "\nq=" + q + "\n";
+  expectUsageError(head + technique + sweep + technique + sweep + "r=1\n", "more than 100000 combinations");
+  // Long texts in many combinations, of parameters and of scenes.
+  const std::string megabytes(4u << 20, 'x');
+  expectUsageError(head + technique + "parameters={p=" + many + ",q='" + megabytes + "'}\n",
+                   "more than 256 MiB of text in all combinations");
+  expectUsageError(
+      "name='a'\nsizes='8x8'\n[[scenes]]\nscene='" + megabytes + "'\nlight_sizes=" + many + "\n" + technique,
+      "more than 256 MiB of text in all combinations");
+  // One list.
+  std::string modes = "modes=['static'";
+  for (int i = 0; i < 100'000; ++i) modes += ",''";
+  expectUsageError(modes + "]\n" + head, "s.toml:1:7: 'modes' lists more than 100000 values");
+}
+
 TEST(BenchSuite, FiltersByLabel) {
   const Suite suite = parseSuite(kSuite, "s.toml");
   const std::string filters[] = {"balls", "samples=16"};
