@@ -11,6 +11,7 @@
 #include "apps/view/viewer_style.h"
 #include "apps/view/viewer_window.h"
 #include "core/base/error.h"
+#include "core/base/failure.h"
 #include "core/bench/results_file.h"
 #include "core/question/question_fields.h"
 #include "core/session/technique_choice.h"
@@ -89,8 +90,8 @@ void ViewerWindow::budgetNews() {
     if (!sameScene(readOf_.scene, state_.scene.scene)) return;
     measured_ = std::move(measured);
     measuredChosen_ = placeOf(readOf_, measured_);
-  } catch (const Error& error) {
-    if (tuneProblem_.empty() && !readUnasked_) say(error.what(), true);
+  } catch (const std::exception&) {
+    if (tuneProblem_.empty() && !readUnasked_) say(currentFailure(), true);
   }
 }
 

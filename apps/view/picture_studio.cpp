@@ -213,21 +213,23 @@ PictureStudio::Outcome PictureStudio::renderShot(ShownPicture& picture, const re
 /// The second picture, which holds the scene once more: where there is no room for that, the first one stays.
 PictureStudio::Outcome PictureStudio::renderBeside(const render::Settings& settings,
                                                    const PictureOrder& order,
-                                                   const std::function<bool()>& cancelled) {
+                                                   const std::function<bool()>& cancelled, Shot& shot) {
   try {
     if (!other_) other_ = makePicture(*view_);
   } catch (const std::exception&) {
-    facts_.other.problem = currentFailure();
+    shot.problem = currentFailure();
     return Outcome::failed;
   }
-  return renderShot(*other_, settings, order, cancelled, facts_.other);
+  return renderShot(*other_, settings, order, cancelled, shot);
 }
 
-/// Where it failed, facts_ say why; where it was cancelled, they are what they were.
+/// Where it failed, facts_ say why; where it was cancelled, they show what they showed, without figures.
 PictureStudio::Outcome PictureStudio::render(const PictureOrder& order,
                                              const std::function<bool()>& cancelled) {
   smooth_.reset();
   smoothOther_.reset();
+  compared_ = false;
+  facts_.metrics.reset();
   try {
     place(order);
   } catch (const Error& error) {
@@ -245,18 +247,20 @@ PictureStudio::Outcome PictureStudio::render(const PictureOrder& order,
             : order.inspect->view);
   }
   double ms = 0;
-  const Outcome outcome = renderShot(*picture_, settings, order, cancelled, facts_.picture);
+  Shot picture = facts_.picture, other;  // told together: both are of one view
+  const Outcome outcome = renderShot(*picture_, settings, order, cancelled, picture);
   if (outcome == Outcome::cancelled) return outcome;
-  if (outcome == Outcome::done) ms += facts_.picture.ms;
+  if (outcome == Outcome::done) ms += picture.ms;
   settings.inspect.reset();
   if (order.beside == Beside::techniques) {
     settings.techniques = order.others;
-    const Outcome beside = renderBeside(settings, order, cancelled);
+    other = facts_.other;
+    const Outcome beside = renderBeside(settings, order, cancelled, other);
     if (beside == Outcome::cancelled) return beside;
-    if (beside == Outcome::done) ms += facts_.other.ms;
-  } else {
-    facts_.other = {};
+    if (beside == Outcome::done) ms += other.ms;
   }
+  facts_.picture = std::move(picture);
+  facts_.other = std::move(other);
   wholeMs_ = ms * reduction_ * reduction_;
   ++facts_.pictures;
   describe(order);
@@ -301,8 +305,7 @@ bool PictureStudio::follow(const PictureOrder& order, const std::function<bool()
   rendered_ = order;
   if (!again) return false;
   reduction_ = wanted;
-  facts_.settled = compared_ = metered_ = false;
-  facts_.metrics.reset();
+  facts_.settled = metered_ = false;
   facts_.exposureEv = order.tone.exposureEv;
   const double start = now();
   const auto milliseconds = [&] { return 1000 * (now() - start); };

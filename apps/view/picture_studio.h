@@ -47,7 +47,7 @@ class PictureStudio {
   Outcome renderShot(ShownPicture& picture, const render::Settings& settings, const PictureOrder& order,
                      const std::function<bool()>& cancelled, Shot& shot);
   Outcome renderBeside(const render::Settings& settings, const PictureOrder& order,
-                       const std::function<bool()>& cancelled);
+                       const std::function<bool()>& cancelled, Shot& shot);
   void describeLights();
   void describe(const PictureOrder& order);
   void inspect(const PictureOrder& order);

@@ -44,12 +44,14 @@ std::pair<float, float> displayRange(const render::InspectedValues& values, int 
 
 }  // namespace
 
-/// What the reference is to be asked; "" where it is not shown. The truth of anything else is dropped.
+/// What the reference is to be asked; "" where it is not shown. The truth of anything else is dropped, also
+/// that of a scene whose key has been cleared.
 std::string PictureStudio::wantedTruth(const PictureOrder& order) {
   std::string key = order.beside == Beside::reference ? truthKeyOf(order) : "";
-  if (key == truthKey_) return key;
+  if (key == truthKey_ && (!key.empty() || !truth_)) return key;
   truthKey_.clear();
   reference_.cancel();
+  facts_.reference = reference_.state();
   truth_.reset();
   facts_.truth.reset();
   facts_.difference.reset();
@@ -90,7 +92,10 @@ bool PictureStudio::noMetrics(const char* why) {
 
 bool PictureStudio::compare(const PictureOrder& order) {
   if (order.beside == Beside::nothing) return noMetrics("");
-  if (order.moving) return noMetrics("measured when the picture stands still");
+  if (order.moving) {
+    compared_ = false;  // at rest the figures come back, also where the picture has stayed the same
+    return noMetrics("measured when the picture stands still");
+  }
   if (!facts_.picture.problem.empty() || !facts_.other.problem.empty())
     return noMetrics("there is no picture to compare");
   if (order.beside == Beside::reference && !truth_)
@@ -107,8 +112,8 @@ bool PictureStudio::compare(const PictureOrder& order) {
         image, against, {.exposureEv = order.tone.exposureEv, .useMask = false, .maskTermRange = {}});
     facts_.difference = std::make_shared<const Image8>(signedDifference(image, against, {}));
     facts_.whyNoMetrics.clear();
-  } catch (const Error& error) {
-    noMetrics(error.what());
+  } catch (const std::exception&) {
+    noMetrics(currentFailure().c_str());
   }
   return true;
 }
@@ -140,10 +145,11 @@ bool PictureStudio::smooth(const PictureOrder& order, const std::function<bool()
   const auto read = [&](ShownPicture& picture, std::optional<Image>& image, Shot& shot) {
     try {
       image = picture.read(view_->camera, aa, outdated);
-    } catch (const Error& error) {
+    } catch (const std::exception&) {
       failed = true;
-      shot.problem = error.what();
+      shot.problem = currentFailure();
     }
+    facts_.compiled = facts_.toCompile = 0;  // later frames may take programs of their own
     if (!image) return false;
     shot.image = std::make_shared<const Image8>(toneMapped(*image, order.tone));
     return true;
@@ -231,7 +237,9 @@ Image PictureStudio::renderWhole(const PictureOrder& order) {
   if (!shown || !facts_.picture.problem.empty()) {
     reduction_ = 1;
     rendered_.reset();
-    if (render(order) != Outcome::done) throw Error(facts_.picture.problem);
+    const Outcome outcome = render(order);
+    wantedTruth(order);  // the one before is not to stand beside this picture
+    if (outcome != Outcome::done) throw Error(facts_.picture.problem);
   }
   if (smooth_) return *smooth_;
   const int aa = order.scene.aa;
@@ -245,6 +253,7 @@ Image PictureStudio::renderNext(const PictureOrder& order) {
   rendered_.reset();
   place(order);
   Image image = picture_->next(view_->camera, view_->time, view_->animation, order.scene.aa);
+  facts_.compiled = facts_.toCompile = 0;  // as in smooth()
   facts_.picture.image = std::make_shared<const Image8>(toneMapped(image, order.tone));
   ++facts_.pictures;
   describe(order);

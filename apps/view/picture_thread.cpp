@@ -4,6 +4,7 @@
 #include <GLFW/glfw3.h>
 
 #include <chrono>
+#include <utility>
 
 #include "apps/limn/options.h"
 #include "apps/view/picture_studio.h"
@@ -41,6 +42,10 @@ struct PictureThread::Mailbox {
       news = true;
     }
     wake.notify_one();
+  }
+  std::deque<Job> takeJobs() {
+    const std::scoped_lock lock(mutex);
+    return std::exchange(jobs, {});
   }
   template <class T>
   void push(T job) {
@@ -99,6 +104,9 @@ void PictureThread::run(const std::stop_token& stop) {
       studio.saving() ? studio.saveNext() : studio.step(order, outdated);
       context_->throwErrors();
     }
+    // A picture that was to be saved when the window was closed is not lost.
+    for (const Mailbox::Job& job : box.takeJobs())
+      if (const auto* save = std::get_if<SaveOrder>(&job); save && !save->frames) studio.save(*save);
   } catch (...) {
     PictureFacts failed;
     failed.fatal = std::current_exception();

@@ -29,6 +29,7 @@ class PictureThread {
   /// Starts the thread. The context that is current on the calling thread stays current. Throws Error when no
   /// EGL context can be created.
   explicit PictureThread(const PictureThreadOptions& options);
+  /// Ends the thread. Pictures that were to be saved are written first, but no more frames of a sequence.
   ~PictureThread();
   PictureThread(const PictureThread&) = delete;
   PictureThread& operator=(const PictureThread&) = delete;

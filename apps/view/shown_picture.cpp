@@ -4,7 +4,7 @@
 #include <chrono>
 
 #include "apps/view/picture_order.h"
-#include "core/base/error.h"
+#include "core/base/failure.h"
 #include "core/render/supersample.h"
 
 namespace limn::app {
@@ -46,8 +46,8 @@ ShownPicture::Outcome ShownPicture::render(const scene::CameraPose& camera, doub
     shown_ = true;
     problem_.clear();
     return Outcome::done;
-  } catch (const Error& error) {
-    problem_ = error.what();
+  } catch (const std::exception&) {  // also where the memory ends
+    problem_ = currentFailure();
     configured_ = shown_ = false;
     return Outcome::failed;
   }

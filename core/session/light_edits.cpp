@@ -123,17 +123,19 @@ void apply(scene::Scene& scene, const scene::Pose& pose, int animation, int ligh
 LightEdits parseLightEdits(const std::vector<std::string>& settings) {
   LightEdits edits;
   for (const std::string& setting : settings) {
-    bool known = false;
-    for (const std::string_view property : {"position", "rotation", "size", "colour", "intensity"}) {
-      const std::string separator = fmt::format(".{}=", property);
-      const size_t at = setting.find(separator);
-      if (at == std::string::npos || at == 0) continue;
-      add(edits[setting.substr(0, at)], setting, property,
-          std::string_view(setting).substr(at + separator.size()));
-      known = true;
-      break;
+    // The last one: a name may hold what looks like a property, a value holds numbers alone.
+    std::string_view property;
+    size_t nameEnd = 0, valueBegin = 0;
+    for (const std::string_view candidate : {"position", "rotation", "size", "colour", "intensity"}) {
+      const std::string separator = fmt::format(".{}=", candidate);
+      const size_t at = setting.rfind(separator);
+      if (at == std::string::npos || at <= nameEnd) continue;
+      property = candidate;
+      nameEnd = at;
+      valueBegin = at + separator.size();
     }
-    if (!known) refuse(setting, "it names no property");
+    if (property.empty()) refuse(setting, "it names no property");
+    add(edits[setting.substr(0, nameEnd)], setting, property, std::string_view(setting).substr(valueBegin));
   }
   return edits;
 }

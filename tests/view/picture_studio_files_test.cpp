@@ -3,6 +3,7 @@
 
 #include <chrono>
 #include <filesystem>
+#include <memory>
 #include <string>
 #include <thread>
 #include <vector>
@@ -176,6 +177,69 @@ TEST_F(PictureStudioTest, SaysWhatCanBeEnded) {
   EXPECT_EQ(endable, std::vector<std::string>{"frame 1 of 2"});
   EXPECT_FALSE(facts.saving);
   EXPECT_FALSE(facts.problem) << facts.message;
+}
+
+/// What is saved stands alone: neither frames of a sequence nor a picture of another place than the one shown
+/// have a truth beside them that is not theirs.
+TEST_F(PictureStudioTest, WhatIsSavedHasNoTruthOfAnotherPicture) {
+  open(lampFile());
+  order.beside = Beside::reference;
+  const auto awaitTruth = [&] {
+    for (int i = 0; i < 200 && !facts.truth; ++i) {
+      step();
+      std::this_thread::sleep_for(std::chrono::milliseconds(50));
+    }
+  };
+  awaitTruth();
+  ASSERT_TRUE(facts.truth) << facts.reference.problem;
+  bool stale = false;
+  heard = [&](const PictureFacts& newest) {
+    stale = stale || newest.truth || newest.metrics || newest.reference.running;
+  };
+  PictureOrder alone = order;
+  alone.beside = Beside::nothing;
+  studio.save({.picture = alone, .file = folder / "a.png", .command = {}, .frames = FrameRange{0, 1}});
+  while (studio.saving()) studio.saveNext();
+  EXPECT_FALSE(facts.problem) << facts.message;
+  EXPECT_FALSE(stale);
+  heard = nullptr;
+  awaitTruth();  // it goes on
+  const std::shared_ptr<const Image8> before = facts.truth;
+  ASSERT_TRUE(before) << facts.reference.problem;
+  heard = [&](const PictureFacts& newest) { stale = stale || newest.truth == before; };
+  PictureOrder moved = order;
+  moved.scene.eye = "0.4,3,0.7";
+  moved.scene.target = "0.5,0,0.5";
+  studio.save({.picture = moved, .file = folder / "b.png", .command = {}, .frames = {}});
+  EXPECT_FALSE(facts.problem) << facts.message;
+  EXPECT_FALSE(stale);
+}
+
+/// A lamp that shines from the second frame on takes programs that the first one does without. Once they are
+/// compiled, the window says it no longer.
+TEST_F(PictureStudioTest, FramesThatCompileSayWhenTheyAreDone) {
+  GltfBuilder b;
+  b.triangle();
+  const int glow = b.append("materials", {{"emissiveFactor", {1, 1, 1}}, {"doubleSided", true}});
+  const int corners = b.vec3({{0, 0, 1}, {1, 0, 1}, {1, 1, 1}, {0, 1, 1}});
+  const int quad = b.mesh({{"POSITION", corners}}, b.indices({0, 1, 2, 0, 2, 3}), glow);
+  const int lamp = b.node({{"name", "lamp"}, {"mesh", quad}});
+  const int times = b.floats({0, 2}), sizes = b.vec3({{0, 0, 0}, {1, 1, 1}});
+  b.append("animations",
+           {{"samplers", GltfBuilder::json::array({{{"input", times}, {"output", sizes}}})},
+            {"channels",
+             GltfBuilder::json::array({{{"sampler", 0}, {"target", {{"node", lamp}, {"path", "scale"}}}}})}});
+  open(b.glb());
+  bool compiled = false;
+  heard = [&](const PictureFacts& newest) {
+    compiled = compiled || (newest.job == "frame 1 of 2" && newest.toCompile > 0);
+  };
+  studio.save(
+      {.picture = order, .file = folder / "a.png", .command = {}, .frames = FrameRange{0, 1}, .fps = 1});
+  while (studio.saving()) studio.saveNext();
+  EXPECT_FALSE(facts.problem) << facts.message;
+  EXPECT_TRUE(compiled);
+  EXPECT_EQ(facts.toCompile, 0);
 }
 
 }  // namespace

@@ -7,6 +7,7 @@
 #include <cmath>
 #include <glm/glm.hpp>
 #include <memory>
+#include <new>
 #include <span>
 #include <thread>
 
@@ -51,11 +52,14 @@ const TechniquePlugin kOneFramePlugin{
 /// Darkens everything, in frames that take so long that pictures are smaller while things move.
 class SlowFrames : public Technique {
  public:
+  static inline bool ran = false;
+
   frame::TextureHandle addPasses(frame::FrameGraph& graph, const TechniqueInputs&,
                                  const TermRequest& request) override {
     frame::PassBuilder pass = graph.addPass("clear", "slow_frames");
     const auto target = pass.write(request.target, frame::Access::copyTarget, "black");
     pass.execute([target](frame::PassContext& passContext) {
+      ran = true;
       std::this_thread::sleep_for(std::chrono::milliseconds(100));
       passContext.gl().ClearTexImage(passContext.texture(target).id(), 0, GL_RED, GL_FLOAT, nullptr);
     });
@@ -129,6 +133,59 @@ TEST_F(PictureStudioTest, NoSmallerPictureTakesThePlaceOfTheSameOne) {
   order.moving = false;
   step();
   EXPECT_TRUE(facts.picture.whole);
+}
+
+/// As after a file that could not be opened: the figures of the picture that has stayed come back.
+TEST_F(PictureStudioTest, FiguresComeBackWithRest) {
+  order.beside = Beside::techniques;
+  open(lampFile());
+  step();
+  ASSERT_TRUE(facts.metrics) << facts.whyNoMetrics;
+  const uint64_t pictures = facts.pictures;
+  order.moving = true;
+  step();
+  EXPECT_FALSE(facts.metrics);
+  order.moving = false;
+  step();
+  EXPECT_TRUE(facts.metrics) << facts.whyNoMetrics;
+  EXPECT_EQ(facts.pictures, pictures) << "the same picture";
+}
+
+/// Both parts of the picture are of one view, also where it was given up while the second one was made.
+TEST_F(PictureStudioTest, TwoPicturesAreShownTogether) {
+  order.beside = Beside::techniques;
+  order.others.push_back({&kSlowFramesPlugin, ParameterValues(kSlowFrames.name, kSlowFrames.parameters)});
+  open(lampFile());
+  step();
+  ASSERT_TRUE(facts.other.image) << facts.other.problem;
+  const glm::ivec2 before = order.size, after(20, 15);
+  order.size = after;
+  SlowFrames::ran = false;
+  studio.step(order, [] { return SlowFrames::ran; });
+  EXPECT_TRUE(SlowFrames::ran);
+  SceneQuestion missing;
+  missing.scene = (folder / "missing.glb").string();
+  studio.open({.scene = missing});  // tells what is shown now
+  EXPECT_TRUE(facts.problem);
+  EXPECT_EQ(facts.picture.size, before);
+  EXPECT_EQ(facts.other.size, before);
+  step();
+  EXPECT_EQ(facts.picture.size, after) << facts.picture.problem;
+  EXPECT_EQ(facts.other.size, after) << facts.other.problem;
+}
+
+/// Where the memory ends in the middle of a frame, the window says so and goes on.
+TEST_F(PictureStudioTest, AFrameThatLacksMemoryIsSaid) {
+  open(lampFile());
+  heard = [](const PictureFacts& newest) {
+    if (newest.toCompile > 0) throw std::bad_alloc();
+  };
+  step();
+  EXPECT_EQ(facts.picture.problem, "out of memory");
+  heard = nullptr;
+  order.tone.exposureEv = 1;
+  step();
+  EXPECT_EQ(facts.picture.problem, "");
 }
 
 /// A picture that is made again gives the scene its lights again, for which the truth stops reading it. Where

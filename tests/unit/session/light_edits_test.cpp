@@ -51,6 +51,20 @@ TEST(LightEdits, AreReadAsTheyArePrinted) {
   EXPECT_EQ(printed(edits), settings);
 }
 
+/// Files may call their lights as they like, and a window undoes and redoes what it printed of them.
+TEST(LightEdits, NamesMayHoldWhatLooksLikeAProperty) {
+  LightEdits edits;
+  for (const char* name : {"lamp.position=left", "lamp.size=1", "a.colour=b.position=", ".intensity="}) {
+    LightEdit& edit = edits[name];
+    edit.position = glm::dvec3(1, 2, 3);
+    edit.rotation = glm::vec3(10, 20, 30);
+    edit.size = glm::vec2(0.5f, 2);
+    edit.colour = glm::vec3(1, 0.5f, 0);
+    edit.intensity = 4.f;
+  }
+  EXPECT_EQ(parseLightEdits(printed(edits)), edits);
+}
+
 TEST(LightEdits, ChangeOneLightAlone) {
   scene::Scene scene = twoLights();
   const scene::Pose before = scene::evaluate(scene, 0);
