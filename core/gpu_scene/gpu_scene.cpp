@@ -105,28 +105,23 @@ void GpuScene::Implementation::updateInstances(const Pose& pose) {
   for (size_t i = 0; i < pose.instances.size(); ++i) {
     const DrawInstance& drawn = pose.instances[i];
     InstanceState& state = states[i];
-    Bounds local;
     state.material = materialIndexOf(scene, drawn);
     if (drawn.node == kNone) {
       const DynamicState& d = dynamic[static_cast<size_t>(drawn.mesh)];
       state.range = d.range;
       state.primitive = geometry.primitiveCount() + static_cast<uint32_t>(drawn.mesh);
-      local = pose.dynamic[static_cast<size_t>(drawn.mesh)].bounds;
     } else {
-      const Primitive& primitive = primitiveOf(scene, pose, drawn);
       state.range = geometry.primitive(drawn.mesh, drawn.primitive);
       state.primitive = geometry.primitiveIndex(drawn.mesh, drawn.primitive);
-      local = primitive.bounds;
       if (drawn.deformed != kNone) {
         const auto d = static_cast<size_t>(drawn.deformed);
         state.range = deformedRanges[d];
         state.primitive = geometry.primitiveCount() + static_cast<uint32_t>(dynamic.size() + d);
-        local = deformedBounds(primitive, pose.deformed[d]);
       }
     }
     const glm::mat3 linear(drawn.objectToWorld);
     state.mirrored = mirrored(drawn);
-    state.bounds = transformed(local, drawn.objectToWorld);
+    state.bounds = instanceBounds(scene, pose, drawn);
     bounds.add(state.bounds);
 
     glsl::Instance& out = nextInstances[i];

@@ -116,8 +116,7 @@ LIMN_API void loadPictureLibrary();
 /// also at most 256 bytes for each byte of the file, so that a small file cannot fill the memory.
 LIMN_API Image readImage(const std::filesystem::path& path);
 
-/// Does the same from memory. `name` is used in messages and, by its extension, to choose the decoder;
-/// without a known extension, the content decides.
+/// Does the same from memory. `name` is used in messages; the content alone chooses the decoder.
 LIMN_API Image readImageMemory(std::span<const std::byte> bytes, const std::string& name);
 
 /// Holds the first channel of a picture whose values are no colours (heights): rows from the top.

@@ -5,6 +5,8 @@
 #include <cmath>
 #include <numbers>
 
+#include "glsl/numeric/geometry.glsl"
+
 namespace limn::scene {
 namespace {
 
@@ -42,7 +44,8 @@ class MetaballSource final : public GeometrySource {
       : settings_(settings),
         points_(settings.resolution + 1),
         reach_(2 * settings.radius),
-        normalToWorld_(glm::inverse(glm::transpose(glm::dmat3(glm::dmat4(settings.toWorld))))) {
+        normalToWorld_(glm::inverse(glm::transpose(glm::dmat3(glm::dmat4(settings.toWorld))))),
+        axis_(glm::normalize(glm::dvec3(settings.toWorld[1]))) {
     uint32_t state = settings.seed * 2654435769u + 1u;
     paths_.resize(static_cast<std::size_t>(settings.count));
     for (Path& path : paths_)
@@ -62,6 +65,7 @@ class MetaballSource final : public GeometrySource {
     primitive_ = free();
     primitive_->positions.clear();
     primitive_->normals.clear();
+    primitive_->tangents.clear();
     primitive_->indices.clear();
     for (std::size_t i = 0; i < paths_.size(); ++i) centres_[i] = (1 - reach_) * paths_[i].at(time);
     fillValues();
@@ -80,6 +84,7 @@ class MetaballSource final : public GeometrySource {
     const auto side = static_cast<std::size_t>(settings_.resolution);
     fresh->positions.reserve(24 * side * side);
     fresh->normals.reserve(24 * side * side);
+    if (settings_.tangents) fresh->tangents.reserve(24 * side * side);
     fresh->indices.reserve(3 * 48 * side * side);
     return pool_.emplace_back(std::move(fresh));
   }
@@ -185,7 +190,10 @@ class MetaballSource final : public GeometrySource {
     // Away from the ends, so that no triangle loses its area.
     const glm::vec3 p = glm::mix(place(a), place(b), std::clamp(va / (va - vb), 0.05f, 0.95f));
     primitive_->positions.emplace_back(settings_.toWorld * glm::vec4(p, 1));
-    primitive_->normals.push_back(glm::vec3(glm::normalize(normalToWorld_ * glm::dvec3(outward(p)))));
+    const glm::vec3 normal(glm::normalize(normalToWorld_ * glm::dvec3(outward(p))));
+    primitive_->normals.push_back(normal);
+    if (settings_.tangents)
+      primitive_->tangents.emplace_back(glsl::frame_along(normal, glm::cross(axis_, normal)).t, 1.f);
     return known;
   }
 
@@ -195,6 +203,7 @@ class MetaballSource final : public GeometrySource {
   int points_;   ///< along a side
   float reach_;  ///< of a ball's field
   glm::dmat3 normalToWorld_;
+  glm::vec3 axis_;  ///< Y of the cube, in the world
   std::vector<Path> paths_;
   std::vector<glm::vec3> centres_;
   std::vector<float> values_;

@@ -16,11 +16,12 @@ struct Metaballs {
   static constexpr int maxCount = 64, minResolution = 8, maxResolution = 128;
   static constexpr float minRadius = 0.02f, maxRadius = 0.45f;
 
-  int count = 8;         ///< number of balls, 1 .. maxCount
-  int resolution = 32;   ///< cells along a side of the cube
-  float radius = 0.2f;   ///< of a single isolated ball, minRadius .. maxRadius
-  uint32_t seed = 0;     ///< chooses the paths
-  glm::mat4 toWorld{1};  ///< invertible
+  int count = 8;          ///< number of balls, 1 .. maxCount
+  int resolution = 32;    ///< cells along a side of the cube
+  float radius = 0.2f;    ///< of a single isolated ball, minRadius .. maxRadius
+  uint32_t seed = 0;      ///< chooses the paths
+  glm::mat4 toWorld{1};   ///< invertible
+  bool tangents = false;  ///< vertices have some, along circles about the cube's Y axis
 };
 
 /// Returns a source of the surface around all balls (Wyvill, McPheeters and Wyvill 1986: kernel of compact

@@ -5,32 +5,11 @@
 #include <cmath>
 
 #include "core/image/byte_values.h"
+#include "glsl/numeric/mip_weights.glsl"
 #include "glsl/numeric/srgb.glsl"
 
 namespace limn::scene {
 namespace {
-
-/// The texels of one side that a texel of the next level covers, and the share of each.
-struct Footprint {
-  int first = 0, count = 0;
-  std::array<float, 3> weight{};
-};
-
-std::vector<Footprint> footprints(int from, int to) {
-  std::vector<Footprint> out(static_cast<std::size_t>(to));
-  const double width = static_cast<double>(from) / to;  // 1, 2, or 2 + 1/to: at most 3 texels, 4 never
-  for (int i = 0; i < to; ++i) {
-    const double low = i * width, high = (i + 1) * width;
-    Footprint& f = out[static_cast<std::size_t>(i)];
-    f.first = static_cast<int>(low + 1e-9);
-    for (int j = f.first; j < from && f.count < 3; ++j) {
-      const double share = std::min<double>(high, j + 1) - std::max<double>(low, j);
-      if (share <= 1e-9) break;
-      f.weight[static_cast<std::size_t>(f.count++)] = static_cast<float>(share / width);
-    }
-  }
-  return out;
-}
 
 /// Linear value to the nearest byte, as sRGB by the number of midpoints between decoded steps that it
 /// reaches. A table has those of values between two of which lies one midpoint at most.
@@ -66,20 +45,19 @@ TextureImage::Level halve(const TextureImage::Level& from, bool srgb, const Enco
   to.width = std::max(1, from.width / 2);
   to.height = std::max(1, from.height / 2);
   to.rgba.resize(static_cast<std::size_t>(to.width) * static_cast<std::size_t>(to.height) * 4);
-  const auto columns = footprints(from.width, to.width), rows = footprints(from.height, to.height);
+  std::vector<glm::vec3> columns;
+  for (int x = 0; x < to.width; ++x) columns.push_back(glsl::mip_weights(x, from.width, to.width));
+  const auto width = static_cast<std::size_t>(from.width);
   std::uint8_t* out = to.rgba.data();
-  for (const Footprint& row : rows) {
-    for (const Footprint& column : columns) {
+  for (int y = 0; y < to.height; ++y) {
+    const glm::vec3 rows = glsl::mip_weights(y, from.height, to.height);
+    for (std::size_t x = 0; x < columns.size(); ++x) {
       glm::vec4 sum(0);
-      for (int r = 0; r < row.count; ++r) {
-        const std::size_t line =
-            static_cast<std::size_t>(row.first + r) * static_cast<std::size_t>(from.width);
-        for (int c = 0; c < column.count; ++c) {
-          const std::uint8_t* texel = &from.rgba[(line + static_cast<std::size_t>(column.first + c)) * 4];
-          const float weight =
-              row.weight[static_cast<std::size_t>(r)] * column.weight[static_cast<std::size_t>(c)];
-          sum += weight * glm::vec4(colour[texel[0]], colour[texel[1]], colour[texel[2]], alpha[texel[3]]);
-        }
+      for (int r = 0; r < 3 && rows[r] > 0; ++r) {
+        const std::uint8_t* texel = &from.rgba[(static_cast<std::size_t>(2 * y + r) * width + 2 * x) * 4];
+        for (int c = 0; c < 3 && columns[x][c] > 0; ++c, texel += 4)
+          sum += rows[r] * columns[x][c] *
+                 glm::vec4(colour[texel[0]], colour[texel[1]], colour[texel[2]], alpha[texel[3]]);
       }
       for (int channel = 0; channel < 3; ++channel) *out++ = encode(sum[channel]);
       *out++ = static_cast<std::uint8_t>(std::min(sum.w, 1.f) * 255.f + 0.5f);

@@ -22,9 +22,9 @@ struct PackedView {
   const unsigned char* data() const { return reinterpret_cast<const unsigned char*>(bytes.data()); }
 };
 
-/// What is not allowed; empty if all is well. A stream that is shorter than the least one of so many elements
-/// is refused before memory is taken: a triangle and an index take a byte, and 16 bytes of an attribute, the
-/// same in as many elements, take 2 bits.
+/// What is not allowed; empty if all is well. A stream that is shorter than the least one of that many
+/// elements is refused before memory is taken: a triangle and an index take a byte, and 16 bytes of an
+/// attribute, the same in as many elements, take 2 bits.
 std::string problemOf(const PackedView& c) {
   constexpr std::size_t kDensest = 64;
   const bool attributes = c.mode == "ATTRIBUTES";

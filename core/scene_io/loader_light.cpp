@@ -34,13 +34,21 @@ void Loader::readLights() {
     light.range = ranged(source.range, 0, 1e30, what + " range");
     if (source.extras.IsObject() && source.extras.Has("limn_texture"))
       light.texture = readLightTexture(source.extras.Get("limn_texture"), light.type, what + " limn_texture");
-    if (source.extras.IsObject() && source.extras.Has("limn_angle")) {
-      const tinygltf::Value& angle = source.extras.Get("limn_angle");
-      if (!angle.IsNumber()) fail(what + " limn_angle: one number (radians) is accepted");
-      light.angle = ranged(angle.GetNumberAsDouble(), 0, glsl::pi, what + " limn_angle");
-    }
+    if (const auto angle = readAngle(source.extras, light.type, what)) light.angle = *angle;
     scene_.lights.push_back(std::move(light));
   }
+}
+
+std::optional<float> Loader::readAngle(const tinygltf::Value& extras, uint32_t type,
+                                       const std::string& what) {
+  if (!extras.IsObject() || !extras.Has("limn_angle")) return std::nullopt;
+  const tinygltf::Value& angle = extras.Get("limn_angle");
+  if (!angle.IsNumber()) fail(what + " limn_angle: one number (radians) is accepted");
+  if (type != glsl::light_directional) {
+    warn(what + ": limn_angle has a meaning for directional lights alone and is ignored");
+    return std::nullopt;
+  }
+  return ranged(angle.GetNumberAsDouble(), 0, glsl::pi, what + " limn_angle");
 }
 
 int Loader::readLightTexture(const tinygltf::Value& index, uint32_t type, const std::string& what) {

@@ -206,7 +206,8 @@ void Loader::readMaterialExtensions(const tinygltf::Material& source, Material& 
   }
   if (const auto* e = extension(map, "KHR_materials_ior")) {
     const double ior = get(*e, "ior", 1.5);
-    m.ior = ior == 0 ? 1000.f : ranged(ior, 1, 1000, what + " ior");  // 0: "infinite", says the extension
+    // 0: "infinite", says the extension
+    m.ior = ior == 0 ? kInfiniteIndex : ranged(ior, 1, kInfiniteIndex, what + " ior");
   }
   if (const auto* e = extension(map, "KHR_materials_specular")) {
     m.specularFactor = ranged(get(*e, "specularFactor", 1), 0, 1, what + " specularFactor");
@@ -226,22 +227,23 @@ void Loader::readMaterialExtensions(const tinygltf::Material& source, Material& 
   }
 }
 
-void Loader::limitSpecularColour(Material& m, const std::string& what) {
+void Loader::settleSpecularColour(Material& m, const std::string& what) {
   const float brightest = std::max({m.specularColour.x, m.specularColour.y, m.specularColour.z});
-  if (brightest <= 1) return;
+  const bool colourAlone = m.ior >= kInfiniteIndex && brightest < 1;
+  if (brightest <= 1 && !colourAlone) return;
   // Reflectance at normal incidence (KHR_materials_specular), without specularFactor.
   const double ratio = (m.ior - 1.0) / (m.ior + 1.0);
   const glm::dvec3 reflected = glm::min(ratio * ratio * glm::dvec3(m.specularColour), 1.0);
   const double most = std::max({reflected.x, reflected.y, reflected.z});
   const bool refracts = m.transmission > 0 || m.subsurface;
-  if (refracts)
+  if (refracts && !colourAlone)
     warn(fmt::format("{}: specularColorFactor {} is clamped to 1, since the surface refracts light", what,
                      brightest));
   if (refracts || most == 0) {
     m.specularColour = glm::min(m.specularColour, 1.f);
     return;
   }
-  constexpr double mostRatio = 999.0 / 1001;  // of the largest index, 1000
+  constexpr double mostRatio = (kInfiniteIndex - 1.0) / (kInfiniteIndex + 1.0);
   const double root = std::min(std::sqrt(most), mostRatio);
   m.ior = static_cast<float>((1 + root) / (1 - root));
   m.specularColour = glm::vec3(reflected / most);
@@ -289,7 +291,7 @@ Material Loader::readMaterial(const tinygltf::Material& source, const std::strin
     applyModel(m, readModel(source.extras.Get("limn_material"), place), place);
   }
   applySubsurface(source, m, what);
-  limitSpecularColour(m, what);
+  settleSpecularColour(m, what);
   if (source.extras.IsObject() && source.extras.Has("limn_height")) {
     const std::string place = what + " limn_height";
     m.height = readHeight(source.extras.Get("limn_height"), uses, place);

@@ -161,13 +161,14 @@ void Loader::readUvs(const tinygltf::Primitive& source, Primitive& out, const st
   out.uvs =
       toVec2(readFloats(accessor, {2}, static_cast<std::int64_t>(out.positions.size()), what + " " + name));
   if (use.scale == glm::vec2(1) && use.offset == glm::vec2(0) && use.rotation == 0) return;
+  const std::string place = what + " transformed " + name;
   // KHR_texture_transform: translation * rotation * scale.
   const float c = std::cos(use.rotation), s = std::sin(use.rotation);
   for (glm::vec2& uv : out.uvs) {
     const glm::vec2 scaled = use.scale * uv;
     uv = use.offset + glm::vec2(c * scaled.x + s * scaled.y, c * scaled.y - s * scaled.x);
-    number(uv.x, what + " transformed " + name);
-    number(uv.y, what + " transformed " + name);
+    number(uv.x, place);
+    number(uv.y, place);
   }
 }
 

@@ -1,4 +1,4 @@
-// Nodes with extras.limn_metaballs: geometry that is made anew for every time.
+// Nodes with extras.limn_metaballs: geometry that is made again for every time.
 #include <tiny_gltf.h>
 
 #include <cmath>
@@ -40,9 +40,9 @@ void Loader::readMetaballs() {
     metaballs.toWorld = nodeToWorld(scene_, static_cast<int>(i));
     const double volume = glm::determinant(glm::dmat3(glm::dmat4(metaballs.toWorld)));
     if (!std::isfinite(volume) || volume == 0) fail(what + ": the node's matrix cannot be inverted");
-    scene_.dynamic.push_back({.name = source.name,
-                              .source = makeMetaballs(metaballs),
-                              .material = metaballMaterial(extras, what)});
+    const int material = metaballMaterial(extras, what);
+    metaballs.tangents = scene_.materials[static_cast<std::size_t>(material)].tangents();
+    scene_.dynamic.push_back({.name = source.name, .source = makeMetaballs(metaballs), .material = material});
   }
 }
 
@@ -84,6 +84,9 @@ int Loader::metaballMaterial(const tinygltf::Value& extras, const std::string& w
   if (index < 0 || static_cast<std::size_t>(index) >= model_->materials.size())
     fail(fmt::format("{} material: an index of the file's {} materials is accepted", what,
                      model_->materials.size()));
+  const Material& chosen = scene_.materials[static_cast<std::size_t>(index)];
+  if (chosen.emission != glm::vec3(0) && !chosen.unlit)
+    warn(what + " material: its emission is displayed but lights nothing");
   return untexturedMaterial(index, what);
 }
 

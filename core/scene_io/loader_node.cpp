@@ -172,11 +172,10 @@ glm::quat Loader::unitRotation(const glm::dquat& q, const std::string& what) con
 
 void Loader::readNodeLight(const tinygltf::Node& source, Node& node, const std::string& what) {
   if (!source.extras.IsObject() || node.light == kNone) return;
-  if (source.extras.Has("limn_angle")) {
+  const uint32_t type = scene_.lights[static_cast<std::size_t>(node.light)].type;
+  if (const auto angle = readAngle(source.extras, type, what)) {
     LightSource own = scene_.lights[static_cast<std::size_t>(node.light)];
-    const tinygltf::Value& angle = source.extras.Get("limn_angle");
-    if (!angle.IsNumber()) fail(what + " limn_angle: one number (radians) is accepted");
-    own.angle = ranged(angle.GetNumberAsDouble(), 0, glsl::pi, what + " limn_angle");
+    own.angle = *angle;
     node.light = static_cast<int>(scene_.lights.size());
     scene_.lights.push_back(std::move(own));
   }

@@ -67,7 +67,7 @@ void Loader::applySpecularGlossiness(const tinygltf::Value& e, Material& m, std:
       gloss.IsNumber() ? ranged(gloss.GetNumberAsDouble(), 0, 1, what + " glossinessFactor") : 1.f;
   m.metallic = 0;
   m.roughness = 1 - glossiness;
-  m.ior = 1000;  // reflects all but 0.4 % of the specular colour
+  m.ior = kInfiniteIndex;
   m.specularFactor = 1;
   if (e.Has("diffuseTexture"))
     readTexture(textureInfo(e.Get("diffuseTexture")), true, m.baseColourTexture, uses,

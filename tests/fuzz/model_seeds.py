@@ -31,7 +31,7 @@ def picture():
 
 
 class Packer:
-    """The cut copy of a document's accessors, numbered anew in the order in which they are asked for."""
+    """The cut copy of a document's accessors, numbered in the order in which they are asked for."""
 
     def __init__(self, root, binary):
         self.accessors, self.views = root.get("accessors", []), root.get("bufferViews", [])

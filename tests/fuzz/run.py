@@ -1,4 +1,4 @@
-"""Runs one libFuzzer target for a while on a corpus made anew. What it finds stays as a file beside the corpus."""
+"""Runs one libFuzzer target for a while on a new corpus. What it finds stays as a file beside the corpus."""
 
 import argparse
 import os

@@ -230,6 +230,28 @@ TEST_F(GpuSceneTest, SkinnedAndMorphedVerticesEqualTransformedOnes) {
   }
 }
 
+/// Windows of lights are fitted to them, which the reference's bounds must not differ from by rounding.
+TEST_F(GpuSceneTest, BoundsAreThoseOfThePose) {
+  scene::Scene scene;
+  scene::Primitive skinned = floorPrimitive(1, addMaterial(scene));
+  skinned.joints.assign(4, glm::u16vec4(0));
+  skinned.weights.assign(4, glm::vec4(1, 0, 0, 0));
+  skinned.jointBounds = {{0, skinned.bounds}};
+  const int mesh = addMesh(scene, skinned);
+  scene::Pose pose;
+  addInstance(scene, pose, mesh);
+  pose.instances[0].deformed = 0;
+  pose.deformed.push_back({mesh, 0, {glm::mat4(1)}, {}});
+  scene::GpuScene gpuScene(device(), scene);
+  for (int step = 0; step < 32; ++step) {
+    const float turn = 0.1f + 0.37f * static_cast<float>(step);
+    pose.deformed[0].joints[0] = at(turn, 3 - turn, 0.7f) * glm::rotate(glm::mat4(1), turn, {1, 2, 3});
+    gpuScene.update(pose, scene::lookAt({0, 2, 4}, {0, 0, 0}, 0.6f), {kSide, kSide}, 0);
+    EXPECT_EQ(gpuScene.bounds(0), scene::instanceBounds(scene, pose, pose.instances[0])) << step;
+    EXPECT_EQ(gpuScene.bounds(), gpuScene.bounds(0)) << step;
+  }
+}
+
 /// Joints that mirror turn the winding and the bitangents round as the transform of a rigid mesh does.
 TEST_F(GpuSceneTest, MirroredSkinsEqualMirroredInstances) {
   scene::Scene rigid;

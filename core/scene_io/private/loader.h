@@ -46,6 +46,10 @@ struct Container {
 /// GLB.
 Container openContainer(std::span<const std::byte> bytes, const std::string& name);
 
+/// Stands for an index of refraction of "infinity" (KHR_materials_ior): a surface that reflects all but 0.4 %
+/// of its specular colour.
+constexpr float kInfiniteIndex = 1000;
+
 /// Returns whether a URI holds its data itself (RFC 2397) instead of naming a file.
 bool isDataUri(std::string_view uri);
 
@@ -160,9 +164,10 @@ class Loader {
   void readMaterials();
   Material readMaterial(const tinygltf::Material& source, const std::string& what);
   void readMaterialExtensions(const tinygltf::Material& source, Material& material, const std::string& what);
-  /// Gives a surface whose specular colour is above 1 one that is not, and the index of refraction with which
-  /// it reflects as much; clamps the colour, with a warning, where light is refracted, too.
-  void limitSpecularColour(Material& material, const std::string& what);
+  /// Gives a surface whose specular colour is above 1, or says alone what it reflects (kInfiniteIndex), one
+  /// whose largest channel is 1, and the index of refraction with which it reflects as much: the G-buffer
+  /// holds dark colours in few steps. Clamps the colour, with a warning, where light is refracted, too.
+  void settleSpecularColour(Material& material, const std::string& what);
   /// Makes the surface show its base colour whatever lights it (KHR_materials_unlit).
   void applyUnlit(Material& material, const std::string& what);
   // loader_specular_glossiness.cpp
@@ -286,6 +291,9 @@ class Loader {
 
   // loader_light.cpp
   void readLights();
+  /// Returns the angular diameter that extras.limn_angle says, of a light or its node; none, with a warning,
+  /// where the light is not directional.
+  std::optional<float> readAngle(const tinygltf::Value& extras, uint32_t type, const std::string& what);
   int readLightTexture(const tinygltf::Value& index, uint32_t type, const std::string& what);
   void readCameras();
 

@@ -1,9 +1,10 @@
-// Surfaces around moving balls: closed, where the field says, made anew for every time.
+// Surfaces around moving balls: closed, where the field says, made again for every time.
 #include "core/scene/metaballs.h"
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
+#include <cmath>
 #include <map>
 #include <set>
 #include <vector>
@@ -143,6 +144,35 @@ TEST(Metaballs, HaveNoTexturesForLackOfCoordinates) {
   EXPECT_FALSE(plain.textured());
   EXPECT_EQ(plain.roughness, 0.25f);
   EXPECT_THAT(scene.warnings, testing::Contains(HasSubstr("balls have no texture coordinates")));
+}
+
+/// Without tangents the grain would be one way in the reference and another way where it is rasterised.
+TEST(Metaballs, HaveTangentsWhereTheirMaterialHasAGrain) {
+  GltfBuilder b = withMetaballs({{"count", 3}, {"resolution", 16}, {"material", 1}});
+  b.append("materials", {{"extras", {{"limn_material", {{"model", "ward"}, {"roughness", {0.1, 0.4}}}}}}});
+  b.node({{"extras", {{"limn_metaballs", {{"count", 1}, {"resolution", 8}}}}}});
+  const Pose pose = evaluate(loadBuilt(b), 1);
+  ASSERT_EQ(pose.dynamic.size(), 2u);
+  const Primitive& grained = *pose.dynamic[0].primitive;
+  ASSERT_FALSE(grained.positions.empty());
+  ASSERT_EQ(grained.tangents.size(), grained.positions.size());
+  for (std::size_t v = 0; v < grained.tangents.size(); ++v) {
+    const glm::vec3 tangent(grained.tangents[v]), normal = grained.normals[v];
+    EXPECT_NEAR(glm::length(tangent), 1, 1e-5);
+    EXPECT_NEAR(glm::dot(tangent, normal), 0, 1e-5);
+    if (std::abs(normal.y) < 0.99f) {
+      EXPECT_NEAR(tangent.y, 0, 1e-5) << "circles about the vertical axis";
+    }
+  }
+  EXPECT_TRUE(pose.dynamic[1].primitive->tangents.empty()) << "no grain";
+}
+
+TEST(Metaballs, SayThatTheyLightNothing) {
+  GltfBuilder b = withMetaballs({{"count", 1}, {"resolution", 8}, {"material", 1}});
+  b.append("materials", {{"emissiveFactor", {1, 0.5, 0}}});
+  EXPECT_THAT(loadBuilt(b).warnings, testing::ElementsAre(HasSubstr("is displayed but lights nothing")));
+  b.root["materials"][1]["extensions"]["KHR_materials_unlit"] = nlohmann::json::object();
+  EXPECT_THAT(loadBuilt(b).warnings, testing::IsEmpty()) << "it shows its base colour";
 }
 
 TEST(Metaballs, NonsenseIsRefusedByName) {

@@ -100,6 +100,19 @@ TEST(SpecularColours, AboveOneAreClampedWithAWarningWhereLightIsRefracted) {
   EXPECT_THAT(glass.warnings, ElementsAre(HasSubstr("material 0: specularColorFactor 2 is clamped to 1")));
 }
 
+/// The G-buffer holds an index near 1.5 finely and a dark colour in few steps.
+TEST(SpecularColours, OfAnInfiniteIndexGiveTheIndexThatReflectsAsMuch) {
+  const json colour = json::array({0.04, 0.04, 0.02});
+  const Material m = withSpecularColour(colour, 0).materials.at(0);
+  expectNear(m.specularColour, {1, 1, 0.5f});
+  EXPECT_NEAR(m.ior, 1.5, 0.005) << "0.4 % less than 0.04 head-on";
+  const Scene glass =
+      withSpecularColour(colour, 0, {{"KHR_materials_transmission", {{"transmissionFactor", 1}}}});
+  EXPECT_EQ(glass.materials.at(0).ior, 1000.f) << "light is refracted by it";
+  expectNear(glass.materials.at(0).specularColour, {0.04f, 0.04f, 0.02f});
+  EXPECT_TRUE(glass.warnings.empty());
+}
+
 TEST(ExtensionColours, OutOfRangeAreClampedWithAWarning) {
   const Scene scene = withSpecularColour(json::array({-1, 1, 1}), 1.5,
                                          {{"KHR_materials_volume", {{"attenuationColor", {2, 0.5, 0.25}}}}});

@@ -397,6 +397,22 @@ TEST(SceneLoad, Smoke) {
   EXPECT_EQ(scene.medium.smoke->resolution, 40);
 }
 
+TEST(SceneLoad, OnlyDirectionalLightsHaveAnAngle) {
+  GltfBuilder b;
+  b.light({{"type", "point"}, {"extras", {{"limn_angle", 0.1}}}});
+  b.light({{"type", "point"}}, {{"extras", {{"limn_angle", 0.2}}}});
+  b.light({{"type", "directional"}, {"extras", {{"limn_angle", 0.3}}}});
+  b.light({{"type", "directional"}}, {{"extras", {{"limn_angle", 0.4}}}});
+  const Scene scene = loadBuilt(b);
+  ASSERT_EQ(scene.lights.size(), 5u) << "the last node has a light of its own";
+  EXPECT_EQ(scene.lights[0].angle, 0);
+  EXPECT_EQ(scene.lights[1].angle, 0);
+  EXPECT_EQ(scene.lights[2].angle, 0.3f);
+  EXPECT_EQ(scene.lights[4].angle, 0.4f);
+  EXPECT_THAT(scene.warnings, ElementsAre(HasSubstr("light 0: limn_angle has a meaning for directional"),
+                                          HasSubstr("node 1: limn_angle has a meaning for directional")));
+}
+
 TEST(SceneLoad, SpotsShineThroughTextures) {
   GltfBuilder b;
   b.texturedMaterial(png(2, 2, {255, 0, 0, 255, 0, 255, 0, 255, 0, 0, 255, 255, 255, 255, 255, 255}));
