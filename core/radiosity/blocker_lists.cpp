@@ -218,26 +218,36 @@ void BlockerLists::findHidden(const SceneElements& elements, const Links& links,
   });
 }
 
-void BlockerLists::findReceivers(const SceneElements& elements, const LightBounds& light) {
+/// Sets the extents of the leaves' parts of the surface, which no light changes.
+void BlockerLists::measureReceivers(const SceneElements& elements) {
   receivers_.assign(elements.forest().leafSlots(), {});
   const auto triangles = elements.triangles();
   for (size_t t = 0; t < shapes_.size(); ++t) {
     const uint32_t* const corners = &triangles[3 * t];
     const auto place = [&](size_t k) { return elements.leaves()[corners[k % 3]].vertex; };
-    const float there = glm::dot(shapes_[t].normal, light.centre) - (light.distant ? 0 : shapes_[t].offset);
-    const bool faces = there > -light.radius;
-    const bool hidden = hidden_[corners[0]] && hidden_[corners[1]] && hidden_[corners[2]];
     const glm::vec3 middle = (place(0) + place(1) + place(2)) / 3.f;
     for (size_t k = 0; k < 3; ++k) {
       Receiver& receiver = receivers_[corners[k]];
       const glm::vec3 normal(elements.leaves()[corners[k]].normal);
-      receiver.listed = receiver.listed || (faces && !hidden);
       for (const glm::vec3 to :
            {0.5f * (place(k + 1) - place(k)), 0.5f * (place(k + 2) - place(k)), middle - place(k)}) {
         receiver.reach = std::max(receiver.reach, glm::length(to));
         receiver.height = std::max(receiver.height, std::abs(glm::dot(to, normal)));
       }
     }
+  }
+}
+
+void BlockerLists::findReceivers(const SceneElements& elements, const LightBounds& light) {
+  for (Receiver& receiver : receivers_) receiver.listed = false;
+  const auto triangles = elements.triangles();
+  for (size_t t = 0; t < shapes_.size(); ++t) {
+    const uint32_t* const corners = &triangles[3 * t];
+    const float there = glm::dot(shapes_[t].normal, light.centre) - (light.distant ? 0 : shapes_[t].offset);
+    const bool faces = there > -light.radius;
+    const bool hidden = hidden_[corners[0]] && hidden_[corners[1]] && hidden_[corners[2]];
+    if (!faces || hidden) continue;
+    for (size_t k = 0; k < 3; ++k) receivers_[corners[k]].listed = true;
   }
 }
 
@@ -277,7 +287,12 @@ void BlockerLists::build(const SceneElements& elements, const Links* links,
   ranges_.resize(lights.size() * leaves);
   triangles_.clear();
   if (leaves == 0) return;
+  if (std::ranges::all_of(lights, &LightBounds::wideDisc)) {
+    std::ranges::fill(ranges_, Range{});
+    return;
+  }
   bound(elements);
+  measureReceivers(elements);
   parts_.resize(std::min(parts, kTogether));
   hidden_.assign(leaves, 0);
   for (size_t l = 0; l < lights.size(); ++l) {

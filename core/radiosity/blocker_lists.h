@@ -71,6 +71,7 @@ class LIMN_API BlockerLists {
   };
 
   void bound(const SceneElements& elements);
+  void measureReceivers(const SceneElements& elements);
   void findHidden(const SceneElements& elements, const Links& links, const LightBounds& light);
   void findReceivers(const SceneElements& elements, const LightBounds& light);
   void list(const SceneElements& elements, const LightBounds& light, uint32_t leaf, Part& part) const;
@@ -87,7 +88,8 @@ class LIMN_API BlockerLists {
 
   std::vector<Triangle> shapes_;   ///< of all triangles
   std::vector<glm::vec4> bounds_;  ///< of each slot's triangles: a sphere; radius < 0: none
-  /// Holds the extent of a leaf's part of the surface around its vertex, m.
+  /// Holds the extent of a leaf's part of the surface around its vertex, m, and whether the light in work may
+  /// need its list.
   struct Receiver {
     float reach = 0;   ///< in all directions
     float height = 0;  ///< along the leaf's normal, either way

@@ -4,7 +4,6 @@
 #include <array>
 #include <cmath>
 #include <cstddef>
-#include <optional>
 
 #include "core/image/byte_values.h"
 #include "core/scene/draw_instance.h"
@@ -23,42 +22,53 @@ bool scatterAlike(const Material& a, const Material& b) {
          (!s.albedoFromBaseColour || a.baseColourTexture.image == b.baseColourTexture.image);
 }
 
-/// Returns for each material the mean colour of the vertices that are drawn with it, where it is a factor on
-/// an albedo, else 1.
-std::vector<glm::vec3> meanVertexColours(const Scene& scene, const Pose& pose) {
+/// Says what the primitives that are drawn with a material make of its albedo.
+struct DrawnAlbedo {
+  glm::vec3 vertexColour{1};  ///< the mean of their vertices, where it is a factor on the albedo, else 1
+  bool varies = false;        ///< albedoVaries() of at least one
+  bool operator==(const DrawnAlbedo&) const = default;
+};
+
+/// Returns it for each material.
+std::vector<DrawnAlbedo> drawnAlbedos(const Scene& scene, const Pose& pose) {
+  std::vector<DrawnAlbedo> result(scene.materials.size());
   std::vector<glm::dvec3> sums(scene.materials.size(), glm::dvec3(0));
   std::vector<double> counts(scene.materials.size(), 0.0);
   for (const DrawInstance& instance : pose.instances) {
     const auto index = static_cast<size_t>(materialIndexOf(scene, instance));
-    const std::optional<Subsurface>& subsurface = scene.materials[index].subsurface;
-    if (!subsurface || !subsurface->albedoFromBaseColour) continue;
+    const Material& material = scene.materials[index];
+    if (!material.subsurface || !material.subsurface->albedoFromBaseColour) continue;
     const Primitive& primitive = primitiveOf(scene, pose, instance);
+    result[index].varies = result[index].varies || albedoVaries(material, primitive);
     const auto vertices = static_cast<double>(primitive.positions.size());
     counts[index] += vertices;
     if (primitive.colours.empty()) sums[index] += glm::dvec3(vertices);
     for (const glm::vec4& colour : primitive.colours) sums[index] += glm::dvec3(colour);
   }
-  std::vector<glm::vec3> means(sums.size(), glm::vec3(1));
-  for (size_t i = 0; i < means.size(); ++i)
-    if (counts[i] > 0) means[i] = glm::vec3(sums[i] / counts[i]);
-  return means;
+  for (size_t i = 0; i < result.size(); ++i)
+    if (counts[i] > 0) result[i].vertexColour = glm::vec3(sums[i] / counts[i]);
+  return result;
 }
 
-/// `vertexColour`: the mean of what it is drawn with.
-TranslucentKind kindOf(const Scene& scene, const Material& material, const glm::vec3& vertexColour) {
+TranslucentKind kindOf(const Scene& scene, const Material& material, const DrawnAlbedo& drawn) {
   const Subsurface& s = *material.subsurface;
   TranslucentKind kind{.extinction = s.extinction,
                        .absorption = s.absorption,
                        .ior = subsurfaceIor(material.ior),
-                       .textured = s.albedoFromBaseColour};
-  if (kind.textured) {
-    kind.albedo = vertexColour * baseAlbedo(scene, material, OfTexels::mean);
+                       .textured = drawn.varies};
+  if (s.albedoFromBaseColour) {
+    kind.albedo = drawn.vertexColour * baseAlbedo(scene, material, OfTexels::mean);
     kind.absorption = subsurfaceAbsorption(kind.albedo, kind.ior);
   }
   return kind;
 }
 
 }  // namespace
+
+bool albedoVaries(const Material& material, const Primitive& primitive) {
+  return material.subsurface && material.subsurface->albedoFromBaseColour &&
+         (material.baseColourTexture.image != kNone || !primitive.colours.empty());
+}
 
 glm::vec3 baseAlbedo(const Scene& scene, const Material& material, OfTexels which) {
   glm::vec3 albedo(material.baseColour);
@@ -118,19 +128,19 @@ TranslucentKinds translucentKinds(const Scene& scene, const Pose& pose) {
   for (const DrawInstance& instance : pose.instances)
     drawn[static_cast<size_t>(materialIndexOf(scene, instance))] = true;
   TranslucentKinds result;
-  const std::vector<glm::vec3> colours = meanVertexColours(scene, pose);
+  const std::vector<DrawnAlbedo> albedos = drawnAlbedos(scene, pose);
   std::vector<size_t> kept;  // a material of each kind
   for (size_t i = 0; i < scene.materials.size(); ++i) {
     const Material& material = scene.materials[i];
     uint32_t& kind = result.ofMaterials.emplace_back(~0u);
     if (!drawn[i] || !material.subsurface) continue;
     const auto same = std::ranges::find_if(kept, [&](size_t other) {
-      return scatterAlike(material, scene.materials[other]) && colours[i] == colours[other];
+      return scatterAlike(material, scene.materials[other]) && albedos[i] == albedos[other];
     });
     kind = static_cast<uint32_t>(same - kept.begin());
     if (same != kept.end()) continue;
     kept.push_back(i);
-    result.kinds.push_back(kindOf(scene, material, colours[i]));
+    result.kinds.push_back(kindOf(scene, material, albedos[i]));
     result.textured = result.textured || result.kinds.back().textured;
   }
   return result;

@@ -48,6 +48,10 @@ enum class OfTexels {
   largest,  ///< in each channel the largest
 };
 
+/// Returns whether the albedo of a translucent material is that of its base colour and another one from place
+/// to place of a primitive: it has a texture, or the vertices have colours.
+LIMN_API bool albedoVaries(const Material& material, const Primitive& primitive);
+
 /// Returns the albedo of a material whose base colour is its albedo: the factor times the texture's. Vertex
 /// colours only make it smaller.
 LIMN_API glm::vec3 baseAlbedo(const Scene& scene, const Material& material, OfTexels which);
@@ -55,10 +59,11 @@ LIMN_API glm::vec3 baseAlbedo(const Scene& scene, const Material& material, OfTe
 /// Holds what translucent materials that scatter alike have in common.
 struct TranslucentKind {
   glm::vec3 extinction{0};  ///< sigma_t', per metre
-  glm::vec3 absorption{0};  ///< sigma_a / sigma_t'; of the mean albedo where that is textured
-  glm::vec3 albedo{0};  ///< where it is textured: the mean of its texels times that of its vertices' colours
-  float ior = 1;        ///< 1 to 3
-  bool textured = false;  ///< the albedo is the base colour of each pixel
+  glm::vec3 absorption{0};  ///< sigma_a / sigma_t'; of the mean albedo where that is the base colour
+  /// Where it is the base colour: the mean of its texels times that of its vertices' colours.
+  glm::vec3 albedo{0};
+  float ior = 1;          ///< 1 to 3
+  bool textured = false;  ///< it varies (albedoVaries()): it is the base colour of each pixel
 };
 
 /// Holds the translucent materials that a scene draws, those that scatter alike once.
@@ -66,7 +71,7 @@ struct TranslucentKinds {
   std::vector<TranslucentKind> kinds;
   std::vector<uint32_t> ofMaterials;  ///< for each material of the scene an index into `kinds`; ~0: it is
                                       ///< opaque, or nothing is drawn with it
-  bool textured = false;              ///< the albedo of at least one kind is
+  bool textured = false;              ///< at least one kind's albedo varies
 };
 
 /// Returns the kinds of the translucent materials of a pose's instances, none where all are opaque.

@@ -80,6 +80,14 @@ relief_maps::ReliefMapDesc bouncesFor(const ParameterValues& parameters) {
           .bounceDirections = directions[static_cast<size_t>(parameters.choice("directions"))]};
 }
 
+/// Holds what the requests of a graph have in common: those for the light that translucent surfaces reflect
+/// and for the light that enters them.
+struct Shared {
+  std::map<std::vector<uint32_t>, frame::TextureHandle> visibility;  ///< by the lights of a batch
+  /// Holds for each light that is answered for texel by texel what the texels gather, bounce after bounce.
+  std::map<uint32_t, std::vector<frame::BufferHandle>> gathered;
+};
+
 class BumpInterreflection : public Technique {
   frame::TextureHandle addPasses(frame::FrameGraph& graph, const TechniqueInputs& inputs,
                                  const TermRequest& request) override;
@@ -110,25 +118,27 @@ class BumpInterreflection : public Technique {
   FlatBases bases_;
   std::optional<BaseBuffers> baseBuffers_;
   BaseHandles baseHandles_;  ///< empty: no surface is flat, or paths are followed for each pixel
+  Shared shared_;
 };
 
-/// Declares the passes of one graph.
+/// Declares the passes of one request.
 class Passes {
  public:
   Passes(frame::FrameGraph& graph, const TechniqueInputs& inputs, const FlatBases* bases,
-         frame::BufferHandle baseBuffer, frame::BufferHandle basesOfInstances)
+         frame::BufferHandle baseBuffer, frame::BufferHandle basesOfInstances, Shared& shared)
       : graph_(graph),
         inputs_(inputs),
         bases_(bases),
         baseBuffer_(baseBuffer),
         basesOfInstances_(basesOfInstances),
+        shared_(shared),
         lit_(inputs.service<relief_maps::ReliefMapService>().request(lightsFor(inputs.parameters))),
         bounces_(inputs.service<relief_maps::ReliefMapService>().request(bouncesFor(inputs.parameters))) {}
 
   /// Adds the light that a batch of lights sends from bump to bump to `target`, and returns it after that.
   /// `texels`: all of the batch are far away, and flat bases are answered for texel by texel.
   frame::TextureHandle add(std::span<const uint32_t> batch, bool texels, frame::TextureHandle target) {
-    const frame::TextureHandle visibility = addVisibility(batch);
+    const frame::TextureHandle visibility = visibilityOf(batch);
     if (texels)
       for (size_t i = 0; i < batch.size(); ++i)
         target = addTexels(batch[i], static_cast<int>(i), visibility, target);
@@ -139,8 +149,16 @@ class Passes {
  private:
   static constexpr const char* kName = BumpInterreflection::info.name;
 
-  frame::TextureHandle addVisibility(std::span<const uint32_t> batch) {
+  /// Returns V of a batch of lights; empty where other surfaces keep no light away.
+  frame::TextureHandle visibilityOf(std::span<const uint32_t> batch) {
     if (!inputs_.parameters.boolean("shadows")) return {};
+    const auto [known, isNew] =
+        shared_.visibility.try_emplace(std::vector<uint32_t>(batch.begin(), batch.end()));
+    if (isNew) known->second = addVisibility(batch);
+    return known->second;
+  }
+
+  frame::TextureHandle addVisibility(std::span<const uint32_t> batch) {
     const frame::TextureHandle layers = graph_.createTexture(
         "visibility of bumps",
         {GL_TEXTURE_2D_ARRAY, GL_R16, inputs_.size.x, inputs_.size.y, static_cast<int>(batch.size()), 1});
@@ -213,12 +231,21 @@ class Passes {
   /// Adds the passes that answer for one light texel by texel.
   frame::TextureHandle addTexels(uint32_t light, int layer, frame::TextureHandle visibility,
                                  frame::TextureHandle target) {
-    frame::BufferHandle texels = addLitTexels(light);
-    for (int bounce = 1; bounce <= inputs_.parameters.integer("bounces"); ++bounce) {
-      texels = addGatheredTexels(texels);
-      target = addLookup(light, layer, bounce, texels, visibility, target);
-    }
+    int bounce = 0;
+    for (const frame::BufferHandle& texels : gatheredOf(light))
+      target = addLookup(light, layer, ++bounce, texels, visibility, target);
     return target;
+  }
+
+  /// Returns what the texels of flat bases gather of one light, bounce after bounce.
+  const std::vector<frame::BufferHandle>& gatheredOf(uint32_t light) {
+    const auto [known, isNew] = shared_.gathered.try_emplace(light);
+    std::vector<frame::BufferHandle>& gathered = known->second;
+    if (!isNew) return gathered;
+    frame::BufferHandle texels = addLitTexels(light);
+    for (int bounce = 1; bounce <= inputs_.parameters.integer("bounces"); ++bounce)
+      gathered.push_back(texels = addGatheredTexels(texels));
+    return gathered;
   }
 
   frame::BufferHandle texelBuffer(std::string_view name) {
@@ -305,6 +332,7 @@ class Passes {
   const TechniqueInputs& inputs_;
   const FlatBases* bases_;  ///< null: no light is answered for texel by texel
   frame::BufferHandle baseBuffer_, basesOfInstances_;
+  Shared& shared_;
   ReliefMaps lit_, bounces_;
 };
 
@@ -336,7 +364,7 @@ frame::TextureHandle BumpInterreflection::addPasses(frame::FrameGraph& graph, co
   }
   if (inputs.parameters.choice("space") == 1) importBases(graph, inputs);
   const auto& [bases, ofInstances] = baseHandles_;
-  Passes passes(graph, inputs, bases ? &bases_ : nullptr, bases, ofInstances);
+  Passes passes(graph, inputs, bases ? &bases_ : nullptr, bases, ofInstances, shared_);
   std::vector<uint32_t> lights(request.lights.begin(), request.lights.end());
   const auto near = std::ranges::stable_partition(lights, [&](uint32_t light) {
     return baseHandles_.bases && inputs.pose.lights[light].type == glsl::light_directional;

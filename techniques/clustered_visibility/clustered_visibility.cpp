@@ -207,7 +207,8 @@ class ClusteredVisibility : public Technique {
                                               .block = indirect::usableBlock(settings.block, lights->count),
                                               .technique = info.name})};
     });
-    if (p.choice("show") == 1) return showClusters(graph, inputs, made.areas, request.target);
+    if (p.choice("show") == 1)  // colours are no light that enters translucent surfaces
+      return inputs.bodyAlbedo ? request.target : showClusters(graph, inputs, made.areas, request.target);
     lights->lights = made.areas.lights;
     indirect::Gather gather(graph, inputs, info.name, *lights, settings);
     if (!made.pass) made.pass = shadePass(graph, inputs, made.areas);

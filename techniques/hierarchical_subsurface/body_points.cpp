@@ -7,6 +7,7 @@
 #include <limits>
 
 #include "core/base/error.h"
+#include "core/scene/diffusion_profile.h"
 #include "core/scene/draw_instance.h"
 #include "core/scene/normal_matrix.h"
 #include "core/scene/subsurface.h"
@@ -141,7 +142,9 @@ void BodyPoints::place(size_t index) {
                                            .normal = still ? normal : glm::normalize(toNormal * normal),
                                            .reach = std::sqrt(part.areas[slot]) * space.radius()};
   }
-  const scene::Material& material = scene::materialOf(scene_, part.pose.instances.front());
+  const scene::DrawInstance& drawn = part.pose.instances.front();
+  const scene::Material& material = scene::materialOf(scene_, drawn);
+  const bool textured = scene::albedoVaries(material, scene::primitiveOf(scene_, part.pose, drawn));
   bodies_[part.draw] = {.centre = space.centre(),
                         .radius = space.radius(),
                         .extinction = material.subsurface->extinction,
@@ -149,7 +152,7 @@ void BodyPoints::place(size_t index) {
                         .absorption = material.subsurface->absorption,
                         .eta = scene::subsurfaceIor(material.ior),
                         .first_node = tree_.first(index),
-                        .textured = material.subsurface->albedoFromBaseColour ? 1u : 0u,
+                        .textured = textured ? 1u : 0u,
                         .unused = glm::uvec2(0)};
 }
 

@@ -47,7 +47,8 @@ frame::TextureHandle Display::show(frame::FrameGraph& graph, const TechniqueInpu
     if (settings_.shown == Shown::pixels) setTrees(program);
     context.dispatch(size.x, size.y, 1, 8, 8);
   });
-  return settings_.drawTree ? drawTree(graph, inputs, solution, around, result) : result;
+  const bool draws = settings_.drawTree && !inputs.bodyAlbedo;  // a tree is no light that enters surfaces
+  return draws ? drawTree(graph, inputs, solution, around, result) : result;
 }
 
 frame::TextureHandle Display::drawTree(frame::FrameGraph& graph, const TechniqueInputs& inputs,
@@ -81,13 +82,14 @@ void Display::setTrees(gpu::Program& program) const {
 
 frame::BufferHandle Display::towardsEye(frame::FrameGraph& graph, const TechniqueInputs& inputs,
                                         const Solution& solution) {
+  frame::BufferHandle& towards = towards_[&solution];
+  if (towards) return towards;
   const uint32_t count = elements_.elements().forest().leafSlots();
   frame::PassBuilder pass = graph.addPass("towards the eye", settings_.technique);
   pass.read(inputs.handles.frame, Access::uniformBuffer, "FrameBlock", "camera");
   readTrees(pass, solution);
-  const frame::BufferHandle towards =
-      pass.write(graph.createBuffer("light towards the eye", {std::max(count, 1u) * sizeof(glm::vec4)}),
-                 Access::storageStore, "Towards", "of leaves");
+  towards = pass.write(graph.createBuffer("light towards the eye", {std::max(count, 1u) * sizeof(glm::vec4)}),
+                       Access::storageStore, "Towards", "of leaves");
   const auto kernel =
       pass.program({.files = {"techniques/illumination_samples/towards_eye.comp.glsl"}, .defines = {}});
   pass.execute([this, kernel, count](frame::PassContext& context) {

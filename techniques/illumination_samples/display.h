@@ -1,6 +1,8 @@
 // Shows the solution as a picture.
 #pragma once
 
+#include <map>
+
 #include "core/indirect/surface_lookup.h"
 #include "techniques/illumination_samples/solution.h"
 
@@ -23,13 +25,15 @@ class Display {
   frame::TextureHandle drawTree(frame::FrameGraph& graph, const TechniqueInputs& inputs,
                                 const Solution& solution, frame::TextureHandle around,
                                 frame::TextureHandle picture) const;
-  /// Declares the pass that looks the trees of leaves up towards the eye.
+  /// Returns what leaves send towards the eye, whatever it is shown on. Declares the pass that looks their
+  /// trees up when first asked for a solution.
   frame::BufferHandle towardsEye(frame::FrameGraph& graph, const TechniqueInputs& inputs,
                                  const Solution& solution);
 
   const Elements& elements_;
   SolutionSettings settings_;
   indirect::SurfaceLookup lookup_;
+  std::map<const Solution*, frame::BufferHandle> towards_;
 };
 
 }  // namespace limn::illumination_samples

@@ -147,11 +147,13 @@ class ImplicitVisibility : public Technique {
       graph.leaveOut("indirect light", info.name, "the scene has no light");
       return request.target;
     }
+    const auto shown = static_cast<Shown>(inputs.parameters.choice("show"));
+    const bool coloured = request.term == Term::indirect && shown != Shown::light;
+    if (coloured && inputs.bodyAlbedo) return request.target;  // colours enter no surface
     begin(graph, inputs);
     if (request.term == Term::visibility) return visibility(r, request.lights);
     if (request.term == Term::environment) return display_->light(r, light_->sky(r));
-    const auto shown = static_cast<Shown>(inputs.parameters.choice("show"));
-    if (shown != Shown::light)
+    if (coloured)
       return display_->colours(r, colours_->colours(r, shown, inputs.parameters.integer("show_level")));
     return display_->light(r,
                            light_->reflected(r, request.lights, sky, inputs.parameters.integer("bounces")));

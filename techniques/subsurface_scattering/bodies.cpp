@@ -18,11 +18,6 @@ namespace {
 
 using glsl::DiffusionBody;
 
-bool isTextured(const scene::Material& material, const scene::Primitive& primitive) {
-  return material.subsurface->albedoFromBaseColour &&
-         (material.baseColourTexture.image != scene::kNone || !primitive.colours.empty());
-}
-
 DiffusionBody makeBody(const scene::Scene& scene, const scene::Material& material, bool textured,
                        const Drawing& drawing) {
   const float eta = scene::subsurfaceIor(material.ior);
@@ -99,7 +94,7 @@ Bodies findBodies(const scene::Scene& scene, const scene::Pose& pose, const Draw
     const scene::DrawInstance& instance = pose.instances[i];
     const scene::Material& material = scene::materialOf(scene, instance);
     if (!material.subsurface) continue;
-    const bool textured = isTextured(material, scene::primitiveOf(scene, pose, instance));
+    const bool textured = scene::albedoVaries(material, scene::primitiveOf(scene, pose, instance));
     // Copies share a body: a textured one asks for all texels of its image.
     const auto [made, isNew] =
         ofMaterials.try_emplace({scene::materialIndexOf(scene, instance), textured}, glsl::no_body);

@@ -1,5 +1,7 @@
 // Light from bump to bump of materials with a model and of translucent ones.
+#include <algorithm>
 #include <string>
+#include <vector>
 
 #include "core/scene/material_model.h"
 #include "glsl/diffusion/boundary.glsl"
@@ -92,6 +94,28 @@ TEST_F(BumpMaterialsTest, FinalPicturesOfBodiesAreAlikeInBothSpaces) {
     return sumOf(drawn(scene, Term::final, {technique("bump_interreflection", {{"space", space}})}));
   };
   EXPECT_NEAR(whole("texture") / whole("pixel"), 1, 0.01);
+}
+
+/// Both questions of the whole picture are about the same shadows and the same light on texels.
+TEST_F(BumpMaterialsTest, WhatBodiesReflectAndWhatEntersThemShareShadowsAndTexels) {
+  const scene::Scene scene = body(bumps(slantedLight(), eggCrate()), 1.5f);
+  for (const std::string& space : kSpaces) {
+    SCOPED_TRACE(space);
+    std::vector<frame::PassReport> passes;
+    drawn(scene, Term::final, {technique("bump_interreflection", {{"space", space}, {"bounces", "2"}})},
+          &passes);
+    const auto count = [&](const std::string& name) {  // a repeated one has a number behind its name
+      return std::ranges::count_if(passes, [&](const frame::PassReport& pass) {
+        return pass.technique == "bump_interreflection" && pass.name.starts_with(name);
+      });
+    };
+    const bool texels = space == "texture";
+    EXPECT_EQ(count("visibility"), 1);
+    EXPECT_EQ(count("lit texels"), texels ? 1 : 0);
+    EXPECT_EQ(count("gathered texels"), texels ? 2 : 0);
+    EXPECT_EQ(count("bumps of pixels"), texels ? 4 : 0);
+    EXPECT_EQ(count("paths of pixels"), texels ? 0 : 2);
+  }
 }
 
 /// What an index of refraction changes of the second bounce over the first, at each pixel, is the mean share

@@ -50,6 +50,13 @@ class SubsurfaceSpreadTest : public TwoBodiesTest {
     return scene;
   }
 
+  /// The scene with white vertices on its floor: an albedo that is the base colour is then each pixel's own.
+  static scene::Scene whiteVertices(scene::Scene scene) {
+    scene::Primitive& floor = scene.meshes[0].primitives[0];
+    floor.colours.assign(floor.positions.size(), glm::vec4(1));
+    return scene;
+  }
+
   /// Light from straight above a floor, none of which a plate above the camera lets through to where
   /// dot(place, side) < edge. The whole scene is turned by `turn`.
   static scene::Scene shadowed(const scene::Material& material, const glm::vec3& side, float edge,

@@ -8,7 +8,9 @@
 #include <utility>
 #include <vector>
 
+#include "core/scene/camera.h"
 #include "tests/gpu/render_test.h"
+#include "tests/support/scene_nodes.h"
 
 namespace limn {
 namespace {
@@ -32,6 +34,18 @@ class TwiceLitTest : public RenderTest {
           if (access.write && access.texture) return access.texture->layers;
     return 0;
   }
+  /// A floor and a wall below which light goes on, and a lamp.
+  static scene::Scene corner() {
+    scene::Scene scene;
+    scene::Material body = test::lambertian(0.5f);
+    body.subsurface = scene::Subsurface{};
+    const int material = test::addMaterial(scene, body);
+    test::show(scene, test::quad({0, 0, 0}, {2, 0, 0}, {0, 0, -2}, material));
+    test::show(scene, test::quad({0, 1, -1}, {2, 0, 0}, {0, 2, 0}, material));
+    test::shine(scene, test::lamp(glsl::light_point, 10), {0.3f, 1.2f, 0.2f});
+    return scene;
+  }
+  static scene::CameraPose camera() { return scene::lookAt({1.2f, 1.2f, 2.5f}, {0, 0.5f, -0.3f}, 0.8f); }
   Image all(render::Renderer& renderer, const std::string& name,
             const std::vector<std::pair<std::string, std::string>>& values) {
     return picture(renderer, settings(64, 48, Term::final, {technique(name, values)}));
@@ -100,6 +114,45 @@ TEST_F(TwiceLitTest, LambertianSurfacesHaveNoSpecularPartBesideGlassAndUnusedMat
   render::Renderer renderer(device(), scene);
   all(renderer, "reflective_shadow_map", {{"vpls", "64"}});
   EXPECT_EQ(layers(renderer, "shade"), 1);
+}
+
+/// Colours of clusters and elements stand in place of light, and a tree over it, in the picture alone: the
+/// surfaces below which light goes on get none of them.
+TEST_F(TwiceLitTest, WhatIsShownInColoursEntersNoSurface) {
+  const scene::Scene scene = corner();
+  render::Renderer renderer(device(), scene);
+  const auto left = [&](std::vector<render::TechniqueUse> techniques) {
+    for (render::TechniqueUse& use : techniques) use.terms = termSet(Term::indirect);
+    return picture(renderer, settings(64, 48, Term::subsurface, std::move(techniques)), camera());
+  };
+  const Image direct = left({});
+  EXPECT_GT(mean(direct), 0);
+  EXPECT_EQ(rmse(left({technique("clustered_visibility", {{"vpls", "64"}, {"show", "clusters"}})}), direct),
+            0);
+  EXPECT_EQ(rmse(left({technique("implicit_visibility",
+                                 {{"bins", "4"}, {"longest_edge", "0.3"}, {"show", "level"}})}),
+                 direct),
+            0);
+  const auto sampled = [&](const char* show) {
+    return left({technique("illumination_samples",
+                           {{"longest_edge", "0.3"}, {"link_error", "0.03"}, {"show", show}})});
+  };
+  const Image lit = sampled("light");
+  EXPECT_GT(mean(lit), mean(direct));
+  EXPECT_EQ(rmse(sampled("tree"), lit), 0);
+}
+
+/// What elements send there is the same, whatever it is looked up for.
+TEST_F(TwiceLitTest, ElementsAreLookedUpTowardsTheEyeOnce) {
+  const scene::Scene scene = corner();
+  render::Renderer renderer(device(), scene);
+  picture(renderer,
+          settings(64, 48, Term::final,
+                   {technique("illumination_samples",
+                              {{"longest_edge", "0.3"}, {"link_error", "0.03"}, {"display", "vertex"}})}),
+          camera());
+  EXPECT_EQ(passes(renderer, "illumination_samples", "interpolate"), 2);
+  EXPECT_EQ(passes(renderer, "illumination_samples", "towards the eye"), 1);
 }
 
 }  // namespace

@@ -293,7 +293,7 @@ TEST_F(VirtualAreasTest, SortsAsManyLightsAsThereMayBe) {
   for (uint32_t i = 0; i < group; ++i) EXPECT_EQ(sorted[i + 1].flux.x, lights[i].flux.x);
 }
 
-/// The scene far from the origin, and moved a little: the clusters follow.
+/// The lights moved a little: the clusters follow.
 TEST_F(VirtualAreasTest, FollowTheirLights) {
   const indirect::VirtualAreaDesc desc{.count = 30};
   const Clusters still = cluster(room(900), desc);

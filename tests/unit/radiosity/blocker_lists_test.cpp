@@ -8,6 +8,7 @@
 #include <cmath>
 #include <memory>
 #include <set>
+#include <span>
 
 #include "core/radiosity/scene_elements.h"
 #include "tests/support/test_scenes.h"
@@ -144,6 +145,38 @@ TEST(BlockerLists, AreEmptyWhereNothingIsInTheWay) {
   lists.build(elements, nullptr, bounds, kPlenty);
   EXPECT_EQ(lists.ranges().size(), 2 * elements.forest().leafSlots());
   EXPECT_TRUE(lists.triangles().empty());
+}
+
+/// The lists of a light are those that it has alone, whatever lights come before it: one above the floor, one
+/// below it, which the floor turns away from, and the sun.
+TEST(BlockerLists, DoNotDependOnOtherLights) {
+  const BlockedWorld world;
+  glsl::Light below = square(0.4f);
+  below.position.y = -1;
+  below.direction.y = 1;
+  const std::array bounds{LightBounds::of(square(0.4f)), LightBounds::of(below), LightBounds::of(sun(0.2f))};
+  const size_t leaves = world.elements->forest().leafSlots();
+  BlockerLists all, alone;
+  all.build(*world.elements, nullptr, bounds, kPlenty);
+  ASSERT_EQ(all.ranges().size(), bounds.size() * leaves);
+  for (size_t l = 0; l < bounds.size(); ++l) {
+    alone.build(*world.elements, nullptr, std::span(&bounds[l], 1), kPlenty);
+    size_t unlisted = 0, listed = 0;
+    for (size_t leaf = 0; leaf < leaves; ++leaf) {
+      const BlockerLists::Range own = alone.ranges()[leaf], found = all.ranges()[l * leaves + leaf];
+      ASSERT_EQ(found.count, own.count) << "light " << l << ", leaf " << leaf;
+      if (own.count == BlockerLists::kUnlisted) {
+        ++unlisted;
+        continue;
+      }
+      listed += own.count;
+      EXPECT_TRUE(std::ranges::equal(all.triangles().subspan(found.first, found.count),
+                                     alone.triangles().subspan(own.first, own.count)))
+          << "light " << l << ", leaf " << leaf;
+    }
+    EXPECT_GT(unlisted, 20u) << l;
+    EXPECT_GT(listed, 20u) << l;
+  }
 }
 
 /// Over the disc of a wide sun points on a plane are not even, whatever was listed before.

@@ -14,6 +14,8 @@
 namespace limn::radiosity {
 namespace {
 
+/// A block that stands on a floor, with its lowest face in the floor's plane: the floor's vertices below it
+/// are corners of triangles that are seen around it, and must not be as bright as if no block were there.
 TEST(RadiosityBodiesTest, WhatLiesWithinAClosedBodyTakesTheLightAroundIt) {
   TriangleMesh block = roomMesh(8);
   for (size_t t = 0; t < block.indices.size(); t += 3) std::swap(block.indices[t + 1], block.indices[t + 2]);

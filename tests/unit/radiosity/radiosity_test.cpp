@@ -265,8 +265,6 @@ TEST(RadiosityTest, HierarchyAgreesWithAllPairs) {
   }
 }
 
-/// A block that stands on a floor, with its lowest face in the floor's plane: the floor's vertices below it
-/// are corners of triangles that are seen around it, and must not be as bright as if no block were there.
 /// Below a plate that hides a bright ceiling: what comes through between links that receivers share and those
 /// of their own.
 TEST(RadiosityTest, SharedLinksLeaveNoHoles) {

@@ -57,8 +57,30 @@ TEST(TranslucentKinds, HaveTheMeanColourOfTheirVertices) {
   EXPECT_EQ(found.kinds[0].albedo, glm::vec3(0.8f, 0.5f, 1));
   EXPECT_EQ(found.kinds[1].albedo, glm::vec3(0.75f * 0.8f, 0.5f * 0.5f, 1))
       << "half of the vertices are white";
+  EXPECT_FALSE(found.kinds[0].textured) << "all pixels have the same albedo";
+  EXPECT_TRUE(found.kinds[1].textured && found.textured);
   for (const TranslucentKind& kind : found.kinds)
     EXPECT_EQ(kind.absorption, subsurfaceAbsorption(kind.albedo, material.ior));
+}
+
+/// Passes read the albedo of pixels only where it is not one for the whole material.
+TEST(TranslucentKinds, AreTexturedWhereTheirAlbedoVaries) {
+  Scene scene;
+  scene.images.resize(1);
+  const auto textured = [&](bool fromBaseColour, int image, bool coloured) {
+    Material material = translucent(10);
+    material.subsurface->albedoFromBaseColour = fromBaseColour;
+    material.baseColourTexture.image = image;
+    Primitive plane = test::floorPrimitive(1, test::addMaterial(scene, material));
+    if (coloured) plane.colours.assign(4, glm::vec4(1));
+    Pose pose;
+    test::addInstance(scene, pose, test::addMesh(scene, plane));
+    return translucentKinds(scene, pose).textured;
+  };
+  EXPECT_FALSE(textured(true, kNone, false));
+  EXPECT_TRUE(textured(true, 0, false));
+  EXPECT_TRUE(textured(true, kNone, true)) << "white ones count as well";
+  EXPECT_FALSE(textured(false, 0, true)) << "coefficients say what absorbs";
 }
 
 TEST(BaseAlbedo, IsTheMeanOrTheLargestOfItsTexture) {
