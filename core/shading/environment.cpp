@@ -248,13 +248,17 @@ std::vector<Share> covered(int i, int coarse, int count, const Measure& measure)
 FilteredMap reduced(const glm::ivec2& size, std::span<const vec3> texels, const glm::ivec2& to) {
   FilteredMap coarse{to.x, to.y, {}};
   coarse.texels.resize(static_cast<size_t>(to.x) * static_cast<size_t>(to.y));
+  std::vector<std::vector<Share>> columns;  // alike in all rows
+  columns.reserve(static_cast<size_t>(to.x));
+  for (int x = 0; x < to.x; ++x)
+    columns.push_back(covered(x, to.x, size.x, [](double place) { return place; }));
   tbb::parallel_for(0, to.y, [&](int y) {
     const auto rows =
         covered(y, to.y, size.y, [&](double place) { return -std::cos(std::numbers::pi * place / size.y); });
     for (int x = 0; x < to.x; ++x) {
       dvec3 sum(0);
       double weights = 0;
-      for (const Share& column : covered(x, to.x, size.x, [](double place) { return place; })) {
+      for (const Share& column : columns[static_cast<size_t>(x)]) {
         for (const Share& row : rows) {
           const double weight = row.weight * column.weight;
           sum += weight * dvec3(texels[static_cast<size_t>(row.index) * static_cast<size_t>(size.x) +

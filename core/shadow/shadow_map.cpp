@@ -48,7 +48,8 @@ struct ShadowMapService::Implementation {
   scene::GpuScene& scene;
   LitScene lit;
   bool watching = false;  ///< some request of the graph is fitted to what the camera sees
-  bool fitted = false;    ///< the maps are fitted to what was taken
+  bool moved = false;     ///< lights or bounds have changed since the maps were fitted to them
+  bool turned = false;    ///< and so has what the camera sees
   std::vector<std::unique_ptr<MapRequest>> requests;
   DerivedMaps derived;
   std::vector<KnownFourierMaps> fourier = {};
@@ -106,7 +107,7 @@ void ShadowMapService::begin() {
   s.uncoveredHandle = {};
   s.lit.take(context().pose);
   s.watching = false;
-  s.fitted = true;  // requests are, as they are made
+  s.moved = s.turned = false;  // requests are fitted as they are made
 }
 
 ShadowMaps ShadowMapService::request(std::span<const uint32_t> lights, const ShadowMapDesc& desc) {
@@ -118,6 +119,7 @@ ShadowMaps ShadowMapService::request(std::span<const uint32_t> lights, const Sha
   // Maps of the scene do as well, until a layout changes: then the graph is built again.
   if (!made->followsView() && !made->hasRange(s.lit)) made->desc.fit = MapFit::scene;
   for (const auto& known : s.requests) {
+    if (!made->desc.cacheable) break;
     if (!known->directions.empty() || !std::ranges::equal(known->lights, lights)) continue;
     if (known->desc == made->desc) return known->maps;
     if (made->cuts() || known->cuts() || ofWholeLights(known->desc) != ofWholeLights(made->desc)) continue;
@@ -211,11 +213,12 @@ FourierMaps ShadowMapService::fourierMaps(const ShadowMaps& maps, const FourierD
 bool ShadowMapService::update(frame::FrameGraph& graph, const scene::Pose& pose) {
   Implementation& s = *implementation_;
   const bool lightsCameOrWent = pose.lights.size() != s.lit.lightCount();
-  if (s.lit.take(pose)) s.fitted = false;
-  if (s.watching && s.lit.see(pose)) s.fitted = false;
-  if (s.fitted) return false;
+  if (s.lit.take(pose)) s.moved = true;
+  if (s.watching && s.lit.see(pose)) s.turned = true;
+  if (!s.moved && !s.turned) return false;
   if (lightsCameOrWent) return true;
   for (const auto& request : s.requests) {
+    if (!s.moved && !request->followsView()) continue;
     if (request->layoutsIn(s.lit) != request->layouts) return true;
     const bool changed = request->fit(s.lit);
     // Lights with extent have a map for each sample, others one for all, in the same layout.
@@ -227,7 +230,7 @@ bool ShadowMapService::update(frame::FrameGraph& graph, const scene::Pose& pose)
     graph.touch(request->importedViews);
     graph.touch(request->importedLights);
   }
-  s.fitted = true;
+  s.moved = s.turned = false;
   return false;
 }
 

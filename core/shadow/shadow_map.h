@@ -124,15 +124,15 @@ class LIMN_API ShadowMapService : public FrameService {
   ShadowMapService(gpu::Device& device, scene::GpuScene& scene);
   ~ShadowMapService() override;
 
-  /// Returns maps for `lights` (indices into Pose::lights), declared in the graph at the first request; equal
-  /// requests share them, and so do requests that differ in `views` alone while no light is cut, or in `fit`
-  /// alone while no map follows the view (MapFit) and no light has a range. Throws UsageError when the maps
-  /// would take more memory or layers than the device has.
+  /// Returns maps for `lights` (indices into Pose::lights), declared in the graph at the first request. Equal
+  /// requests share maps that are cacheable; batches are rendered for each, so that none of them is held
+  /// until it is wanted again. Requests that differ in `views` alone share them while no light is cut, and so
+  /// do those that differ in `fit` alone while no map follows the view (MapFit) and no light has a range.
+  /// Throws UsageError when the maps would take more memory or layers than the device has.
   ShadowMaps request(std::span<const uint32_t> lights, const ShadowMapDesc& desc);
   /// Returns maps for parallel light along `directions` (unit, of propagation) that belongs to no light of
   /// the pose: one orthographic map around the scene for each, and a ShadowLight whose light is
-  /// glsl::no_light. Samples of `desc` are not used. Equal requests share maps that are cacheable; batches
-  /// are rendered for each, so that none of them is held until it is wanted again.
+  /// glsl::no_light. Samples of `desc` are not used. Requests share them as those of lights do.
   ShadowMaps request(std::span<const glm::vec3> directions, const ShadowMapDesc& desc);
 
   /// Returns the layout of each light of a request. While the graph lives they stay the same: update() has it
@@ -152,10 +152,10 @@ class LIMN_API ShadowMapService : public FrameService {
   int layersOf(uint32_t light, const ShadowMapDesc& desc) const;
   std::vector<ShadowMapStats> stats() const;
 
-  /// Returns the counter of pixels (times lights) that no map covers: a storage buffer of one uint that
-  /// visibility passes increment atomically; a pass sets it to 0 in each frame. A pass that writes to it
-  /// replaces the handle with the one that PassBuilder::write() returns. To be called before the writing pass
-  /// is added.
+  /// Returns the counter of pixels that no map covers, times lights, and times samples that have maps of
+  /// their own: a storage buffer of one uint that visibility passes increment atomically; a pass sets it to 0
+  /// in each frame. A pass that writes to it replaces the handle with the one that PassBuilder::write()
+  /// returns. To be called before the writing pass is added.
   frame::BufferHandle& uncoveredCounter();
   /// Returns the count of the last frame. Blocks until the GPU has finished: for statistics and tests only.
   uint32_t uncoveredPixels() const;

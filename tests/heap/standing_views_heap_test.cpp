@@ -65,6 +65,40 @@ TEST_F(ShadowMapHeap, whatStandsStillIsNotFittedAgain) {
       });
 }
 
+/// What the camera sees changes maps that are fitted to it and no others, however many there are.
+TEST_F(ShadowMapHeap, mapsOfTheSceneAreNotFittedAgainForACameraThatMoves) {
+  scene::Scene scene;
+  addMesh(scene, floorPrimitive(20, addMaterial(scene)));
+  scene::Pose pose;
+  addInstance(scene, pose, 0);
+  addLight(pose, rectangleLight({0, 8, 0}, {0, -1, 0}, 2, 1));
+  const auto look = [](float x) { return scene::lookAt({x, 2, 3}, {x, 0, 0}, 0.5f); };
+  const std::vector<uint32_t> lights{0};
+  int64_t taken[2] = {};  // without maps of the scene, and with some
+  for (const bool others : {false, true}) {
+    scene::GpuScene gpuScene(device(), scene);
+    gpuScene.update(pose, look(0), {64, 64}, 0);
+    FrameServices services;
+    auto& service = services.add<shadow::ShadowMapService>(device(), gpuScene);
+    frame::FrameGraph graph;
+    const auto building = services.begin(graph, gpuScene.import(graph), pose);
+    graph.output(service.request(lights, {.size = 16, .fit = shadow::MapFit::view}).depth);
+    for (const int size : {32, 64}) {
+      if (others) graph.output(service.request(lights, {.size = size}).depth);
+    }
+    for (uint32_t frame = 1; frame < 6; ++frame) {
+      gpuScene.update(pose, look(0.5f * static_cast<float>(frame)), {64, 64}, frame);
+      const CountedAllocations allocations;
+      const bool rebuild = services.update(graph, pose);
+      taken[others ? 1 : 0] = allocations.count();
+      EXPECT_FALSE(rebuild);
+    }
+    gpuScene.forget();
+  }
+  EXPECT_GT(taken[0], 0);
+  EXPECT_EQ(taken[1], taken[0]);
+}
+
 TEST_F(CausticRaysHeap, viewsOfWhatStandsStillAreNotFittedAgain) {
   expectNothingMade(
       glass(1.5f),
