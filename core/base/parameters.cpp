@@ -42,7 +42,7 @@ bool parseValue(const Parameter& p, std::string_view text, double& value) {
   const auto number = parseNumber(text);
   if (!number || *number < p.range.low || *number > p.range.high) return false;
   if (p.type == ParameterType::integer && *number != std::floor(*number)) return false;
-  value = *number;
+  value = *number + 0.0;  // of -0, which would be printed as another value than 0
   return true;
 }
 

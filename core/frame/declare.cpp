@@ -53,7 +53,8 @@ bool accepts(Graph& graph, uint32_t pass, Handle handle, Access access, bool wri
 template <class Handle>
 void declareRead(Graph& graph, uint32_t pass, Handle handle, Access access, std::string_view why) {
   graph.planned = false;
-  if (!accepts(graph, pass, handle, access, false, why)) return;
+  graph.passes[pass].refused = !accepts(graph, pass, handle, access, false, why);
+  if (graph.passes[pass].refused) return;
   graph.passes[pass].accesses.push_back(
       {handle.resource, handle.version, kNoIndex, access, std::string(why)});
   graph.resources[handle.resource].versions[handle.version].readers.push_back(pass);
@@ -62,7 +63,8 @@ void declareRead(Graph& graph, uint32_t pass, Handle handle, Access access, std:
 template <class Handle>
 Handle declareWrite(Graph& graph, uint32_t pass, Handle handle, Access access, std::string_view why) {
   graph.planned = false;
-  if (!accepts(graph, pass, handle, access, true, why)) return handle;
+  graph.passes[pass].refused = !accepts(graph, pass, handle, access, true, why);
+  if (graph.passes[pass].refused) return handle;
   Resource& resource = graph.resources[handle.resource];
   const auto next = static_cast<uint32_t>(resource.versions.size());
   Version& parent = resource.versions[handle.version];
@@ -93,7 +95,7 @@ void declareName(Graph& graph, uint32_t pass, NamedResource named) {
 /// Names what was declared last.
 void nameAccess(Graph& graph, uint32_t pass, const ShaderName& name) {
   const std::vector<ResourceAccess>& accesses = graph.passes[pass].accesses;
-  if (accesses.empty()) return;  // it was refused
+  if (accesses.empty() || graph.passes[pass].refused) return;
   const ResourceAccess& last = accesses.back();
   if (!isShaderAccess(last.access)) {
     graph.problems.push_back(fmt::format("pass '{}' has '{}' as {}, which no shader calls '{}'",

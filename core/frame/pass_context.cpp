@@ -142,10 +142,10 @@ void PassContext::dispatch(int width, int height, int depth, int groupX, int gro
 }
 
 void PassContext::dispatchRows(int64_t groups) const {
+  if (groups <= 0) return;
   constexpr int64_t kLongest = 32768;
-  const int64_t length = std::min(groups, kLongest);
-  if (length > 0)
-    dispatch(static_cast<int>(length), static_cast<int>((groups + length - 1) / length), 1, 1, 1);
+  const int64_t rows = (groups + kLongest - 1) / kLongest, length = (groups + rows - 1) / rows;
+  dispatch(static_cast<int>(length), static_cast<int>(rows), 1, 1, 1);
 }
 
 }  // namespace limn::frame

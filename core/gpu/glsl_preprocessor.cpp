@@ -66,6 +66,7 @@ class Expander {
     stack_.push_back(path);
     appendLineMark(1, number);
     OpenConditions conditions;
+    bool miscounted = false;  // by a compiler that reads on behind this line
     for (size_t i = 0; i < file.lines.size(); ++i) {
       const GlslLine& line = file.lines[i];
       if (line.directive == "version") {
@@ -75,7 +76,7 @@ class Expander {
         appendRequirement(macro, i + 1, number);
         conditions.inserted();
       }
-      const bool miscounted = conditions.follow(line, known_);
+      miscounted = conditions.follow(line, known_) || miscounted;
       const Holds here = conditions.here();
       if (line.directive == "undef" && here != Holds::no) known_.erase(line.argument);
       if (line.directive == "include") {
@@ -85,10 +86,14 @@ class Expander {
           conditions.inserted();
         }
         appendLineMark(i + 2, number);  // one line for one where it is not read either
+        miscounted = false;
       } else {
         result_.text.append(line.text).push_back('\n');
         const bool goesOn = line.text.find('\\') != std::string_view::npos;
-        if (miscounted && !goesOn) appendLineMark(i + 2, number);
+        if (miscounted && !goesOn) {
+          appendLineMark(i + 2, number);
+          miscounted = false;
+        }
       }
     }
     stack_.pop_back();

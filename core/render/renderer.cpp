@@ -57,7 +57,13 @@ bool Renderer::Implementation::render(frame::Timing timing, const frame::FrameGr
   }
   if (rebuild) rebuildGraph();
   if (settings.dynamic) graph->invalidate();
-  const bool whole = graph->execute(timing, cancelled);
+  bool whole = false;
+  try {
+    whole = graph->execute(timing, cancelled);
+  } catch (...) {
+    services.givenUp();
+    throw;
+  }
   if (!whole) services.givenUp();
   begun = begun || whole;
   return whole;

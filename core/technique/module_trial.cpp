@@ -18,11 +18,10 @@
 namespace limn {
 namespace {
 
-constexpr int kLived = 113;    // exit status that a module is unlikely to end its process with
 constexpr int kPatience = 10;  // seconds
 
 /// How far a trial has come.
-enum class Stage : int { loading, leaving };
+enum class Stage : int { loading, leaving, left };
 
 const char* said(Stage stage) {
   return stage == Stage::loading ? "when it is loaded" : "when the program ends";
@@ -87,7 +86,8 @@ void runDestructors(void* handle) {
   }
   stage = Stage::leaving;
   if (void* handle = dlopen(file.c_str(), RTLD_LAZY | RTLD_NOLOAD)) runDestructors(handle);
-  _exit(kLived);
+  stage = Stage::left;
+  _exit(0);
 }
 
 }  // namespace
@@ -100,7 +100,8 @@ void tryModule(const std::filesystem::path& file, const std::string& name) {
   pid_t ended = child;
   while (child > 0 && (ended = waitpid(child, &status, 0)) < 0 && errno == EINTR) {
   }
-  if (ended < 0)
+  // Where nobody waits for children (SIGCHLD ignored) how far it came must do.
+  if (ended < 0 && *stage != Stage::left)
     throw Error(fmt::format("{}: it cannot be tried in a process of its own: {}", file.string(),
                             std::strerror(errno)));
   const char* when = said(*stage);
@@ -108,7 +109,7 @@ void tryModule(const std::filesystem::path& file, const std::string& name) {
     throw Error(fmt::format("{}: it does not come back within {} s {}", file.string(), kPatience, when));
   if (WIFSIGNALED(status))
     throw Error(fmt::format("{}: it crashes {} ({})", file.string(), when, strsignal(WTERMSIG(status))));
-  if (WEXITSTATUS(status) != kLived)
+  if (*stage != Stage::left)
     throw Error(
         fmt::format("{}: it ends its process {} (exit status {})", file.string(), when, WEXITSTATUS(status)));
 }

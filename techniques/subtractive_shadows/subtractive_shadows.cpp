@@ -213,7 +213,7 @@ class SubtractiveShadows : public Technique {
   }
 
   /// Returns where the unshadowed light of a request comes from, and makes the cache where it comes from
-  /// there. What has no lobes has its light from filtered maps in every case.
+  /// there. What has no lobes has it from filtered maps in place of samples of lobes or of the cache.
   Unshadowed findUnshadowed(frame::FrameGraph& graph, const TechniqueInputs& inputs) {
     const ParameterValues& p = inputs.parameters;
     const auto asked = static_cast<Unshadowed>(p.choice("unshadowed"));

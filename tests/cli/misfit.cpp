@@ -111,6 +111,7 @@ extern "C" __attribute__((visibility("default"))) const limn::TechniquePlugin* l
   if (name == "entry_aborts") die(SIGABRT);
   if (name == "entry_crashes") die(SIGSEGV);
   if (name == "entry_exits") _exit(0);
+  if (name == "entry_exits_113") _exit(113);
   if (name == "entry_hangs") pause();
   return &plugin;
 }

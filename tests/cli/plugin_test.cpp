@@ -30,6 +30,7 @@ const std::vector<Broken>& misfits() {
       {"entry_aborts", "it crashes when it is loaded (Aborted)"},
       {"entry_crashes", "it crashes when it is loaded (Segmentation fault)"},
       {"entry_exits", "it ends its process when it is loaded (exit status 0)"},
+      {"entry_exits_113", "it ends its process when it is loaded (exit status 113)"},
       {"entry_hangs", "it does not come back within"},
       {"entry_throws", "its entry point failed: no licence"},
       {"entry_throws_42", "its entry point failed: it threw something that is no std::exception"},

@@ -25,7 +25,8 @@ constexpr gpu::EmbeddedSource kReported[] = {
      "  float sum = half_of(weights[place.x % 2u] + weights[place.y % 2u]);\n"
      "  imageStore(target, ivec2(place), vec4(sum) + texelFetch(source, ivec2(0), 0));\n"
      "}\n"},
-    {"half.glsl", "float half_of(float x) { return 0.5 * x; }\n"}};
+    {"half.glsl", "float half_of(float x) { return 0.5 * x; }\n"},
+    {"idle.comp.glsl", "layout(local_size_x = 1) in;\nvoid main() {}\n"}};
 
 class ProgramReportTest : public FrameGraphGpu {
  protected:
@@ -91,6 +92,26 @@ TEST_F(ProgramReportTest, CountsTheDispatchesOfTheLastFrame) {
   graph.execute();
   EXPECT_EQ(graph.programs()[1].dispatches, 2);
   EXPECT_THAT(graph.programs()[1].groups, ElementsAre(2u, 2u, 1u));
+}
+
+TEST_F(ProgramReportTest, RowsOfWorkGroupsHoldFewMoreThanAreAskedFor) {
+  struct Case {
+    int64_t groups;
+    GLuint length, rows;
+  };
+  for (const Case& wanted :
+       {Case{1, 1, 1}, Case{32768, 32768, 1}, Case{32769, 16385, 2}, Case{65537, 21846, 3}}) {
+    FrameGraph graph;
+    PassBuilder pass = graph.addPass("rows");
+    const ProgramHandle run = pass.program({{"techniques/report/idle.comp.glsl"}, {}});
+    pass.sideEffect().execute([=](PassContext& context) {
+      context.use(run);
+      context.dispatchRows(wanted.groups);
+    });
+    prepare(graph);
+    graph.execute();
+    EXPECT_THAT(graph.programs()[0].groups, ElementsAre(wanted.length, wanted.rows, 1u)) << wanted.groups;
+  }
 }
 
 TEST_F(ProgramReportTest, ReadsPlainUniforms) {

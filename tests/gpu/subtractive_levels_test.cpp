@@ -30,6 +30,28 @@ TEST_F(SubtractiveLevelsTest, LevelsBeginAtTheBestAndEndAtTheLeast) {
   EXPECT_LT(rmse(renderer.read(), least), 1e-6);
 }
 
+/// The clock between the starts of frames that fail says nothing of what a frame takes.
+TEST_F(SubtractiveLevelsTest, FramesThatFailLeaveTheLevelAlone) {
+  const scene::Scene scene = lit(coarse("balls"), sky(), 0);
+  render::Renderer renderer(device(), scene);
+  const auto with = [&](const char* time) {
+    return settings(64, 48, Term::direct,
+                    {shadows({{"shadow_map_size", "64"},
+                              {"combine", "ratio"},
+                              {"block", "32"},
+                              {"lights", "40"},
+                              {"frame_time", time}})});
+  };
+  const Image best = picture(renderer, with("0"));
+  renderer.configure(with("0.001"));
+  renderer.render();
+  const auto fails = []() -> bool { throw Error("it fails"); };
+  for (int i = 0; i < 60; ++i)
+    EXPECT_EQ(errorOf([&] { renderer.render(frame::Timing::off, fails); }), "it fails");
+  renderer.render();
+  EXPECT_LT(rmse(renderer.read(), best), 1e-6);
+}
+
 /// On the way from one level to the next, lights or blocks, each of eight frames changes the picture by an
 /// eighth of what the level changes, whichever pixels tell the lights apart, and whichever batch they are in.
 /// Light that is subtracted changes by an eighth before negative light is cut off, and what coats see changes

@@ -85,6 +85,7 @@ struct Pass {
   std::vector<uint32_t> programs;
   std::function<void(PassContext&)> function;
   bool cacheable = false, sideEffect = false;
+  bool refused = false;  ///< what was declared last: it is not in `accesses`
 
   // Plan.
   bool kept = false;

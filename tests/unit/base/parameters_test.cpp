@@ -77,6 +77,15 @@ TEST(Parameters, PrintWhatTheyWouldParse) {
   EXPECT_EQ(copy.printed(), values.printed());
 }
 
+/// Rows of results go by what is printed.
+TEST(Parameters, ZeroHasNoSign) {
+  constexpr Parameter signedOnes[] = {integer("offset", 1, {-4, 4}, "texels", "Offset"),
+                                      real("shift", 1, {-4, 4}, "texels", "Shift")};
+  ParameterValues values("demo", signedOnes);
+  for (const char* name : {"offset", "shift"}) values.set(name, "-0");
+  for (const auto& [name, text] : values.printed()) EXPECT_EQ(text, "0") << name;
+}
+
 TEST(Parameters, AskingForWhatWasNotDeclaredIsABug) {
   const ParameterValues values("demo", kDeclared);
   EXPECT_THROW(values.integer("bias"), std::logic_error);

@@ -217,6 +217,16 @@ TEST(FrameGraphProblems, AreAllReportedAtOnceInOneLine) {
   EXPECT_THROW(graph.explain(), Error);
 }
 
+TEST(FrameGraphProblems, WhatIsRefusedGivesItsNameToNothingElse) {
+  FrameGraph graph;
+  const BufferHandle corners =
+      graph.addPass("fill").write(graph.createBuffer("corners", {64}), Access::storageStore, "");
+  PassBuilder draw = graph.addPass("draw");
+  draw.read(corners, Access::vertexBuffer, "").read(TextureHandle{}, Access::sampled, "map", "colours");
+  draw.sideEffect();
+  EXPECT_EQ(problemsOf(graph), "frame graph: pass 'draw' reads a null texture handle (colours)");
+}
+
 /// A graph that is built again often lies where the one before it lay.
 TEST(FrameGraphProblems, HandlesOfAGraphThatIsGoneAreRefused) {
   std::optional<FrameGraph> graph(std::in_place);

@@ -140,6 +140,14 @@ TEST(GlslPreprocessor, linesBehindASkippedIncludeAreCounted) {
             "#else\n#line 4 0\nelse\n#endif\n#line 6 0\nlast\n");
 }
 
+TEST(GlslPreprocessor, linesBehindAConditionOfTwoLinesAreCounted) {
+  const Files files = {
+      {"main.comp.glsl", "#ifdef X\n#include \"a.glsl\"\n#elif Y || \\\n  Z\nelse\n#endif\nlast\n"},
+      {"a.glsl", "text a\n"}};
+  EXPECT_THAT(expand(files).text,
+              HasSubstr("#elif Y || \\\n  Z\n#line 5 0\nelse\n#endif\n#line 7 0\nlast\n"));
+}
+
 TEST(GlslPreprocessor, commentsHideDirectives) {
   const Files files = {{"main.comp.glsl",
                         "// #include \"x.glsl\"\n/* #include \"x.glsl\"\n#include \"x.glsl\"\n*/ #include "

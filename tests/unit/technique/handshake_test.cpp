@@ -3,6 +3,7 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
+#include <csignal>
 #include <cstring>
 
 #include "core/base/file.h"
@@ -90,6 +91,13 @@ TEST(SharedObject, OfAnotherMachineOrKindIsRefused) {
   EXPECT_THAT(with(56, 0) + with(57, 0), HasSubstr("program headers"));
   EXPECT_THAT(with(39, 0x7f), HasSubstr("cut short"));  // e_phoff
   EXPECT_THAT(with(47, 0x7f), HasSubstr("cut short"));  // e_shoff
+}
+
+/// What is wrong with a file is said when it is loaded.
+TEST(ModuleTrial, EndsWhereChildrenAreNotWaitedFor) {
+  const auto before = std::signal(SIGCHLD, SIG_IGN);
+  EXPECT_NO_THROW(tryModule("/dev/null", "none"));
+  std::signal(SIGCHLD, before);
 }
 
 }  // namespace
