@@ -176,7 +176,7 @@ std::vector<StressRun::Asked> StressRun::askedOf(TermSet answered, StressChange 
     const Asked asked{info.term, shown(info.term, change)};
     if (std::ranges::find(all, asked.name(), &Asked::name) == all.end()) all.push_back(asked);
   }
-  // Terms of one scene follow each other, since only the last scene is kept.
+  // Terms of one scene follow each other, since few scenes are kept.
   std::ranges::stable_sort(all, {}, [](const Asked& asked) {
     return asked.answered == Term::environment ? 1 : asked.answered == Term::surface ? 2 : 0;
   });
@@ -197,8 +197,14 @@ StressRun::Question& StressRun::question(const Asked& asked, const StressCase& c
   const std::string key =
       fmt::format("{} {} {}{}{}{}{}", c.scene, static_cast<int>(c.change), c.amount, sky ? " sky" : "",
                   fog ? " fog" : "", glass ? " glass" : "", models ? " models" : "");
-  if (question_ && question_->key == key) return *question_;
-  question_.reset();
+  const auto known = std::ranges::find(
+      questions_, key, [](const std::unique_ptr<Question>& kept) -> const std::string& { return kept->key; });
+  if (known != questions_.end()) {
+    std::rotate(known, known + 1, questions_.end());
+    return *questions_.back();
+  }
+  const auto most = static_cast<std::size_t>(std::max(1, options_.scenes));
+  if (questions_.size() >= most) questions_.erase(questions_.begin());
   scene::Scene scene = scene_(c.scene);
   if (sky) scene = litBySkyAlone(std::move(scene));
   if (fog) scene = inFog(std::move(scene));
@@ -212,8 +218,8 @@ StressRun::Question& StressRun::question(const Asked& asked, const StressCase& c
         cameraAtSmallest(question->scene, pose, question->camera, static_cast<float>(c.amount));
   question->size = {options_.width, options_.height};
   if (c.change == StressChange::imageWidth) question->size = {static_cast<int>(c.amount), 1};
-  question_ = std::move(question);
-  return *question_;
+  questions_.push_back(std::move(question));
+  return *questions_.back();
 }
 
 /// The RMSE against the reference, relative to its mean unless it is a factor of a light. Throws

@@ -71,6 +71,9 @@ LIMN_API StressCase stressCaseFor(const TechniqueInfo& technique, StressCase str
 struct StressOptions {
   int width = 128, height = 96;
   int spp = 64;  ///< of the references
+  /// How many scenes are kept with their renderers. Cases that ask of several by turns take less time by
+  /// more, and more memory.
+  int scenes = 1;
 };
 
 /// Runs cases of one technique after the other; references are shared.
@@ -104,9 +107,9 @@ class LIMN_API StressRun {
   const TechniqueRegistry& registry_;
   std::function<scene::Scene(const std::string&)> scene_;
   StressOptions options_;
-  std::unique_ptr<Question> question_;       ///< the last one
-  std::map<std::string, Image> references_;  ///< by question
-  std::map<std::string, double> benign_;     ///< by technique and question
+  std::vector<std::unique_ptr<Question>> questions_;  ///< the last ones, the newest behind
+  std::map<std::string, Image> references_;           ///< by question
+  std::map<std::string, double> benign_;              ///< by technique and question
 };
 
 /// Returns a table with a line for each result, in the order in which they were measured; those that did not

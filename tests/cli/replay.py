@@ -20,12 +20,21 @@ PASSES = [("robot", "pcss", "pcss/visibility"),
 SIZE = "64x48"
 
 
+def told_something_else(folder):
+    """Has the pass of pcss take other samples than it took in limn."""
+    passes = json.loads((folder / "passes.json").read_text())
+    uniforms = next(p for p in passes["passes"] if p["technique"] == "pcss")["programs"][0]["uniforms"]
+    next(u for u in uniforms if u["name"] == "filter_samples")["value"] = "2"
+    (folder / "passes.json").write_text(json.dumps(passes))
+
+
 def main(limn, source):
     if subprocess.run(["/usr/bin/python3", "-c", "import OpenGL"], capture_output=True).returncode != 0:
         print("PyOpenGL is missing (Debian package python3-opengl)")
         return 77
     replay = pathlib.Path(source) / "scripts/replay-pass"
     glslang = shutil.which("glslangValidator")
+    compiled = set()  # stages and texts: frames have shaders in common
     with tempfile.TemporaryDirectory() as temporary:
         folder = pathlib.Path(temporary) / "passes"
         for scene, technique, title in PASSES:
@@ -33,18 +42,17 @@ def main(limn, source):
                             "--out", folder, "-q"], check=True)
             subprocess.run([replay, folder, title], check=True)
             for shader in (folder / "shaders").iterdir() if glslang else ():
-                subprocess.run([glslang, "-S", shader.name.split(".")[-2], shader], check=True, stdout=subprocess.DEVNULL)
+                stage, text = shader.name.split(".")[-2], shader.read_bytes()
+                if (stage, text) not in compiled:
+                    subprocess.run([glslang, "-S", stage, shader], check=True, stdout=subprocess.DEVNULL)
+                    compiled.add((stage, text))
             print(scene, title, "is the same")
-        # A pass that is told something else leaves something else: the comparison can fail.
-        subprocess.run([limn, "passes", "robot", "--technique", "pcss", "--size", SIZE, "--contents", "pcss/visibility",
-                        "--out", folder, "-q"], check=True)
-        passes = json.loads((folder / "passes.json").read_text())
-        uniforms = next(p for p in passes["passes"] if p["technique"] == "pcss")["programs"][0]["uniforms"]
-        next(u for u in uniforms if u["name"] == "filter_samples")["value"] = "2"
-        (folder / "passes.json").write_text(json.dumps(passes))
-        if subprocess.run([replay, folder, "pcss/visibility"]).returncode != 1:
-            print("other samples left the same")
-            return 1
+            # A pass that is told something else leaves something else: the comparison can fail.
+            if title == "pcss/visibility":
+                told_something_else(folder)
+                if subprocess.run([replay, folder, title]).returncode != 1:
+                    print("other samples left the same")
+                    return 1
     return 0
 
 

@@ -8,6 +8,12 @@
 
 #include <algorithm>
 #include <cstdlib>
+#include <filesystem>
+#include <memory>
+#include <string>
+#include <tuple>
+#include <utility>
+#include <vector>
 
 #include "core/image/metrics.h"
 #include "tests/gpu/render_test.h"
@@ -36,10 +42,19 @@ class GoldenTest : public PictureTest {
     return e;
   }
 
-  /// Scenes side by side in one picture; those that answer the environment's light are lit by a sky alone,
-  /// and those that cut surfaces, answer media, caustics, specular or subsurface, or look into height maps,
-  /// have their own scenes.
-  Image strip(const std::vector<render::TechniqueUse>& techniques) {
+  /// What a picture shows side by side.
+  struct Sights {
+    std::vector<std::string> scenes;
+    bool outdoors = false;  ///< lit by a sky alone
+    bool operator==(const Sights&) const = default;
+    bool operator<(const Sights& other) const {
+      return std::tie(scenes, outdoors) < std::tie(other.scenes, other.outdoors);
+    }
+  };
+  /// Techniques that answer the environment's light show scenes lit by a sky alone, and those that cut
+  /// surfaces, answer media, caustics, specular or subsurface, or look into height maps, have scenes of their
+  /// own.
+  static Sights sightsOf(const std::vector<render::TechniqueUse>& techniques) {
     const auto answers = [&](Term term) {
       return std::ranges::any_of(techniques, [term](const render::TechniqueUse& use) {
         return contains(use.plugin->info->terms, term);
@@ -56,16 +71,40 @@ class GoldenTest : public PictureTest {
                             [](const render::TechniqueUse& use) { return use.plugin->info->places; }))
       scenes = {"bump_wall", "egg_crate", "bump_sphere"};
     if (answers(Term::subsurface)) scenes = {"marble_statue", "translucent_spheres", "translucent_head"};
-    const bool outdoors = answers(Term::environment);
-    Image whole(kWidth * int(scenes.size()), kHeight, {"R", "G", "B"});
-    for (size_t s = 0; s < scenes.size(); ++s) {
-      scene::Scene scene = asset(scenes[s]);
-      if (outdoors) {
-        for (scene::Node& node : scene.nodes) node.light = scene::kNone;
-        scene.environment = sky();
+    return {std::move(scenes), answers(Term::environment)};
+  }
+
+  struct Stage {
+    scene::Scene scene;
+    render::Renderer renderer;
+    explicit Stage(scene::Scene shown) : scene(std::move(shown)), renderer(device(), scene) {}
+  };
+  /// Scenes with their renderers, which the next picture has as well if it shows the same: scenes are read,
+  /// and programs of core compiled, once. Nothing that a renderer drew before counts in a picture.
+  struct Stages {
+    Sights sights;
+    std::vector<std::unique_ptr<Stage>> all;
+
+    void show(Sights wanted) {
+      if (!all.empty() && sights == wanted) return;
+      all.clear();
+      sights = std::move(wanted);
+      for (const std::string& name : sights.scenes) {
+        scene::Scene scene = asset(name);
+        if (sights.outdoors) {
+          for (scene::Node& node : scene.nodes) node.light = scene::kNone;
+          scene.environment = sky();
+        }
+        all.push_back(std::make_unique<Stage>(std::move(scene)));
       }
-      render::Renderer renderer(device(), scene);
-      const Image part = picture(renderer, settings(kWidth, kHeight, Term::final, techniques));
+    }
+  };
+
+  static Image strip(Stages& stages, const std::vector<render::TechniqueUse>& techniques) {
+    stages.show(sightsOf(techniques));
+    Image whole(kWidth * int(stages.all.size()), kHeight, {"R", "G", "B"});
+    for (size_t s = 0; s < stages.all.size(); ++s) {
+      const Image part = picture(stages.all[s]->renderer, settings(kWidth, kHeight, Term::final, techniques));
       for (int y = 0; y < kHeight; ++y)
         for (int x = 0; x < kWidth; ++x)
           for (int c = 0; c < 3; ++c) whole.at(x + int(s) * kWidth, y, c) = part.at(x, y, c);
@@ -73,13 +112,13 @@ class GoldenTest : public PictureTest {
     return whole;
   }
 
-  void check(const std::string& name, const std::vector<render::TechniqueUse>& techniques,
-             const fs::path& golden) {
+  static void check(Stages& stages, const std::string& name,
+                    const std::vector<render::TechniqueUse>& techniques, const fs::path& golden) {
     SCOPED_TRACE(name);
     const char* variable = std::getenv("LIMN_UPDATE_GOLDEN");
     const std::string update = variable != nullptr ? variable : "";
     if (!update.empty() && update != "1" && update != name) return;
-    const Image actual = strip(techniques);
+    const Image actual = strip(stages, techniques);
     if (!update.empty()) {
       fs::create_directories(golden.parent_path());
       writePng(golden, actual);
@@ -122,14 +161,20 @@ class GoldenTest : public PictureTest {
 };
 
 TEST_F(GoldenTest, Unshadowed) {
-  check("unshadowed", {}, fs::path(test::kSourceDir) / "tests/golden/unshadowed.png");
+  Stages stages;
+  check(stages, "unshadowed", {}, fs::path(test::kSourceDir) / "tests/golden/unshadowed.png");
 }
 
 TEST_F(GoldenTest, EveryTechnique) {
-  for (const TechniquePlugin* plugin : testedTechniques()) {
+  std::vector<const TechniquePlugin*> plugins = testedTechniques();
+  const auto sights = [](const TechniquePlugin* plugin) { return sightsOf({technique(plugin->info->name)}); };
+  std::stable_sort(plugins.begin(), plugins.end(),
+                   [&](const TechniquePlugin* a, const TechniquePlugin* b) { return sights(a) < sights(b); });
+  Stages stages;
+  for (const TechniquePlugin* plugin : plugins) {
     // The Vulkan driver beneath zink (lavapipe of Mesa 22.3) crashes in this one's pass "light points".
     if (overZink() && plugin->info->name == std::string_view("hierarchical_subsurface")) continue;
-    check(plugin->info->name, {technique(plugin->info->name)},
+    check(stages, plugin->info->name, {technique(plugin->info->name)},
           fs::path(test::kSourceDir) / "techniques" / plugin->info->name / "golden.png");
   }
 }

@@ -67,14 +67,26 @@ class PrefilteredEnvironmentTest : public RenderTest {
     return scene::lookAt(50.f * towards, {0, 0, 0}, 2 * std::atan(0.02f));
   }
 
-  Image drawn(const scene::Scene& scene, std::vector<std::pair<std::string, std::string>> values = {},
-              const scene::CameraPose& view = camera()) {
-    values.emplace(values.begin(), "size", "128");  // another size stands behind it
-    const int width = kBallSide * static_cast<int>(scene.nodes.size());
-    render::Renderer renderer(device(), scene);
-    return picture(renderer,
-                   settings(width, kBallSide, Term::direct, {technique("prefiltered_environment", values)}),
-                   view);
+  using Values = std::vector<std::pair<std::string, std::string>>;
+
+  /// Pictures of a row, which must outlive it, by one renderer: its programs are compiled once.
+  class Drawing {
+   public:
+    explicit Drawing(const scene::Scene& scene)
+        : width_(kBallSide * static_cast<int>(scene.nodes.size())), renderer_(device(), scene) {}
+    Image with(Values values, const scene::CameraPose& view = camera()) {
+      values.emplace(values.begin(), "size", "128");  // another size stands behind it
+      return picture(
+          renderer_,
+          settings(width_, kBallSide, Term::direct, {technique("prefiltered_environment", values)}), view);
+    }
+
+   private:
+    const int width_;
+    render::Renderer renderer_;
+  };
+  static Image drawn(const scene::Scene& scene, Values values = {}) {
+    return Drawing(scene).with(std::move(values));
   }
 
   /// Counts the technique's passes by name.
@@ -144,8 +156,9 @@ TEST_F(PrefilteredEnvironmentTest, EveryModelHasItsLightOfASmoothEnvironment) {
   const scene::Scene scene =
       row(models, test::environmentOf(256, [&](vec3 d) { return vec3(1 + 0.8f * glm::dot(d, bright)); }));
   const Image exact = traced(scene);
+  Drawing drawing(scene);
   for (const char* map : {"paraboloid", "equirectangular"}) {
-    const Image image = drawn(scene, {{"map", map}});
+    const Image image = drawing.with({{"map", map}});
     for (size_t i = 0; i < models.size(); ++i) {
       double worst = 0;
       for (const double more : excess(image, exact, static_cast<int>(i)))
@@ -154,7 +167,7 @@ TEST_F(PrefilteredEnvironmentTest, EveryModelHasItsLightOfASmoothEnvironment) {
       EXPECT_LT(worst, balls[i].bound) << map << ' ' << balls[i].name;
     }
   }
-  const Image mirror = drawn(scene, {{"lookup", "mirror"}});
+  const Image mirror = drawing.with({{"lookup", "mirror"}});
   const std::array<double, 4> along = excess(mirror, exact, 0);
   EXPECT_LT(*std::ranges::min_element(along), -0.02);
 }
@@ -277,10 +290,11 @@ TEST_F(PrefilteredEnvironmentTest, PicturesOfAnyShapeHaveTheirIrradiance) {
                         vec3(1 + 0.8f * glsl::equirectangular_direction(middle).y));
     }
     const scene::Scene scene = row({lambert()}, sky);
+    Drawing drawing(scene);
     for (const char* map : {"paraboloid", "equirectangular"})
       for (const vec3& side : {vec3(0, 0, 1), vec3(1, 0, 0), vec3(0, 0, -1)}) {
         SCOPED_TRACE(std::to_string(size.x) + " x " + std::to_string(size.y) + ' ' + map);
-        const Image image = drawn(scene, {{"map", map}}, camera(side));
+        const Image image = drawing.with({{"map", map}}, camera(side));
         // Where n.y is 0.5 and -0.5: half of the ball's radius, 0.95 of half the picture.
         EXPECT_NEAR(image.at(kBallSide / 2, 10, 0), 1 + 0.8f / 3, 0.02f);
         EXPECT_NEAR(image.at(kBallSide / 2, kBallSide - 11, 0), 1 - 0.8f / 3, 0.02f);
@@ -299,9 +313,10 @@ TEST_F(PrefilteredEnvironmentTest, MapsOfAnySizeAreRound) {
   const vec3 bright = glm::normalize(vec3(1));
   const scene::Scene scene =
       row({wide}, test::environmentOf(128, [&](vec3 d) { return vec3(1 + 0.8f * glm::dot(d, bright)); }));
+  Drawing drawing(scene);
   for (const vec3& side : {vec3(0, 0, 1), vec3(-1, 0, 0)}) {
     const auto with = [&](const char* size) {
-      return drawn(scene, {{"map", "equirectangular"}, {"size", size}, {"samples", "32"}}, camera(side));
+      return drawing.with({{"map", "equirectangular"}, {"size", size}, {"samples", "32"}}, camera(side));
     };
     const Image expected = with("256");
     for (const char* size : {"200", "250"}) {
@@ -333,8 +348,9 @@ TEST_F(PrefilteredEnvironmentTest, ABrightSunKeepsItsIrradiance) {
   narrow.exponent = 1000;
   coat.options = glsl::model_option_physical;
   const scene::Scene scene = row({lambert(), model(glsl::model_torrance_sparrow, 0.05f), narrow, coat}, sun);
+  Drawing drawing(scene);
   for (const char* map : {"paraboloid", "equirectangular"}) {
-    const Image image = drawn(scene, {{"map", map}});
+    const Image image = drawing.with({{"map", map}});
     expectWithin(image, 0, 1.01f * kSun);
     const double facing = static_cast<double>(image.at(kBallSide / 2, kBallSide / 2, 0));
     EXPECT_NEAR(facing / (irradiance / M_PI), 1, 0.03) << map;
@@ -352,8 +368,9 @@ TEST_F(PrefilteredEnvironmentTest, ASunOfOnePixelKeepsItsIrradianceEverywhere) {
     const scene::Scene scene = row({lambert()}, sun);
     const vec3 towards = glsl::equirectangular_direction((vec2(at) + 0.5f) / vec2(kWidth, kHeight));
     const float facing = 1e5f * glsl::equirectangular_pixel_solid_angle(at.y, kWidth, kHeight) / glsl::pi;
+    Drawing drawing(scene);
     for (const char* map : {"paraboloid", "equirectangular"}) {
-      const Image image = drawn(scene, {{"map", map}}, camera(towards));
+      const Image image = drawing.with({{"map", map}}, camera(towards));
       EXPECT_NEAR(static_cast<double>(image.at(kBallSide / 2, kBallSide / 2, 0) / facing), 1, 0.02)
           << map << " (" << at.x << ", " << at.y << ')';
     }

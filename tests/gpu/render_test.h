@@ -141,6 +141,14 @@ class PictureTest : public GlTest {
     return all;
   }
 
+  /// The same techniques, each once.
+  static std::vector<std::string> techniquesWithPictures() {
+    std::vector<std::string> names;
+    for (const auto& [name, term] : techniquesAndTerms())
+      if (std::ranges::find(names, name) == names.end()) names.push_back(name);
+    return names;
+  }
+
   static render::Settings settings(int width, int height, Term term,
                                    std::vector<render::TechniqueUse> techniques = {}, int light = -1) {
     render::Settings s;

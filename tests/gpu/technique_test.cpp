@@ -2,6 +2,9 @@
 #include <gmock/gmock.h>
 
 #include <algorithm>
+#include <string>
+#include <utility>
+#include <vector>
 
 #include "core/base/error.h"
 #include "core/bench/private/stress_scene.h"
@@ -96,11 +99,16 @@ TEST_F(TechniqueTest, ScaleOfTheSceneDoesNotMatter) {
       const auto whole = [&](render::Renderer& of) {
         return picture(of, settings(128, 96, Term::final, {quick(name)}));
       };
-      const Image answered = answer(renderer), shown = whole(renderer);
+      // Of a technique that answers both terms the whole picture is the same each time.
+      const bool again =
+          term == Term::indirect && contains(registry().find(name).info->terms, Term::visibility);
+      const Image answered = answer(renderer), shown = again ? Image() : whole(renderer);
       for (render::Renderer* scaled : {&smallRenderer, &largeRenderer}) {
         SCOPED_TRACE(name + (scaled == &smallRenderer ? " at scale 1e-4" : " at scale 1e4"));
         EXPECT_LT(rmse(answered, answer(*scaled)), 1e-3);
-        EXPECT_LT(rmse(shown, whole(*scaled)), 1e-3);
+        if (!again) {
+          EXPECT_LT(rmse(shown, whole(*scaled)), 1e-3);
+        }
       }
     }
   }
@@ -111,7 +119,7 @@ TEST_F(TechniqueTest, ExtremeResolutionsGiveFinitePictures) {
   render::Renderer renderer(device(), scene);
   for (const auto& [width, height] :
        {std::pair(1, 1), std::pair(4096, 1), std::pair(1, 4096), std::pair(17, 3)})
-    for (const auto& [name, term] : techniquesAndTerms()) {
+    for (const std::string& name : techniquesWithPictures()) {
       SCOPED_TRACE(name);
       expectWithin(picture(renderer, settings(width, height, Term::final, {smallest(name)})), 0, 1e6f);
     }
@@ -141,7 +149,7 @@ TEST_F(TechniqueTest, CameraInsideAnObjectGivesAFinitePicture) {
   const scene::Scene scene = coarse("balls");
   render::Renderer renderer(device(), scene);
   scene::CameraPose camera = renderer.pose().cameras.at(0);
-  for (const auto& [name, term] : techniquesAndTerms()) {
+  for (const std::string& name : techniquesWithPictures()) {
     renderer.configure(settings(64, 48, Term::final, {smallest(name)}));
     camera.worldToView = glm::mat4(1);
     camera.worldToView[3] = glm::vec4(-renderer.pose().bounds.centre(), 1);
@@ -190,7 +198,7 @@ TEST_F(TechniqueTest, TwoAnswersToDirectLightAreRefused) {
 
 TEST_F(TechniqueTest, AnEmptySceneCompilesNothingAndAllocatesOnlyTheOutput) {
   const scene::Scene scene;
-  for (const auto& [name, term] : techniquesAndTerms()) {
+  for (const std::string& name : techniquesWithPictures()) {
     SCOPED_TRACE(name);
     render::Renderer renderer(device(), scene);
     renderer.configure(settings(64, 48, Term::final, {technique(name)}));

@@ -70,6 +70,8 @@ for name in targets:
         else:
             folders.setdefault(pathlib.Path(command["file"]).parent, []).append(command)
     groups += [group for group in folders.values() if len(group) > 1]
+# The longest first, or the last of them has one processor to itself at the end.
+groups.sort(key=lambda group: -sum(pathlib.Path(command["file"]).stat().st_size for command in group))
 with ThreadPoolExecutor(os.cpu_count()) as pool:
     found = [line for lines in [*pool.map(alone, sources), *pool.map(together, groups)] for line in lines]
 print("\n".join(found) or f"{len(sources)} sources compile alone, {len(groups)} folders of sources together")
