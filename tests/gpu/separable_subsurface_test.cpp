@@ -46,19 +46,7 @@ TEST_F(SeparableSubsurfaceTest, EdgesOfShadowsSpreadAsLineIntegralsSay) {
 }
 
 TEST_F(SeparableSubsurfaceTest, AlbedosOfTheBaseColourAreThoseOfCoefficients) {
-  for (const float absorption : {0.001f, 0.2f}) {
-    scene::Material material = matter(30, absorption);
-    const scene::Scene coefficients = lit(material, kLit);
-    material.subsurface->albedoFromBaseColour = true;
-    const scene::Scene plain = lit(material, kLit);
-    for (const std::string& profile : kProfiles) {
-      const Image wanted = below(coefficients, {{"profile", profile}});
-      // Taps fall into other pixels where widths differ by rounding.
-      for (const scene::Scene& albedo : {plain, whiteVertices(plain)})
-        EXPECT_LT(rmsDifference(below(albedo, {{"profile", profile}}), wanted), 2e-3)
-            << profile << ' ' << absorption;
-    }
-  }
+  expectAlbedosAsCoefficientsSay();
 }
 
 TEST_F(SeparableSubsurfaceTest, PixelsOfAnotherAlbedoAreWiderOrNarrower) {

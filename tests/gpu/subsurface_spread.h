@@ -116,6 +116,23 @@ class SubsurfaceSpreadTest : public TwoBodiesTest {
     return std::sqrt(error / power);
   }
 
+  /// An albedo that is the base colour, of the material or of each pixel by itself, scatters as coefficients
+  /// with that albedo do, but for rounding, which may move taps to other pixels.
+  void expectAlbedosAsCoefficientsSay() {
+    for (const float absorption : {0.001f, 0.2f}) {
+      scene::Material material = matter(30, absorption);
+      const scene::Scene coefficients = lit(material, kLit);
+      material.subsurface->albedoFromBaseColour = true;
+      const scene::Scene plain = lit(material, kLit);
+      for (const std::string& profile : kProfiles) {
+        const Image wanted = below(coefficients, {{"profile", profile}});
+        for (const scene::Scene& albedo : {plain, whiteVertices(plain)})
+          EXPECT_LT(rmsDifference(below(albedo, {{"profile", profile}}), wanted), 2e-3)
+              << profile << ' ' << absorption;
+      }
+    }
+  }
+
   /// C of a profile over the albedo of the local limit.
   static double reflectanceOverAlbedo(const scene::Material& material, bool normalised) {
     const auto profile = scene::diffusionProfile(material.subsurface->extinction,

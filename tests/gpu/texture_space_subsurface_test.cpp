@@ -48,18 +48,7 @@ TEST_F(TextureSpaceSubsurfaceTest, EdgesOfShadowsSpreadAsLineIntegralsSay) {
 }
 
 TEST_F(TextureSpaceSubsurfaceTest, AlbedosOfTheBaseColourAreThoseOfCoefficients) {
-  for (const float absorption : {0.001f, 0.2f}) {
-    scene::Material material = matter(30, absorption);
-    const scene::Scene coefficients = lit(material, kLit);
-    material.subsurface->albedoFromBaseColour = true;
-    const scene::Scene plain = lit(material, kLit);
-    for (const std::string& profile : kProfiles) {
-      const Image wanted = below(coefficients, {{"profile", profile}});
-      for (const scene::Scene& albedo : {plain, whiteVertices(plain)})
-        EXPECT_LT(rmsDifference(below(albedo, {{"profile", profile}}), wanted), 2e-3)
-            << profile << ' ' << absorption;
-    }
-  }
+  expectAlbedosAsCoefficientsSay();
 }
 
 // Gaussians of the white material that is left without the vertices' colours would be several times as wide.

@@ -1,18 +1,24 @@
-// A rendering thread's work without its thread and without a window, and a scene for it to open.
+// A rendering thread's work without its thread and without a window, a scene for it to open and a technique
+// that takes its time.
 #pragma once
 
 #include <gtest/gtest.h>
 
+#include <atomic>
+#include <chrono>
 #include <cstddef>
 #include <filesystem>
 #include <functional>
 #include <memory>
+#include <span>
+#include <thread>
 #include <vector>
 
 #include "apps/view/picture_studio.h"
 #include "core/base/file.h"
 #include "core/context/context.h"
 #include "core/gpu/device.h"
+#include "core/technique/technique.h"
 #include "tests/cli/process.h"
 #include "tests/support/gltf_builder.h"
 
@@ -27,6 +33,37 @@ inline std::vector<std::byte> lampFile(const char* name = "lamp") {
   b.node({{"name", name}, {"mesh", mesh}});
   return b.glb();
 }
+
+/// Darkens everything, in frames that take so long that pictures are smaller while things move.
+class SlowFrames : public Technique {
+ public:
+  static inline std::atomic<bool> ran = false;
+
+  frame::TextureHandle addPasses(frame::FrameGraph& graph, const TechniqueInputs&,
+                                 const TermRequest& request) override {
+    frame::PassBuilder pass = graph.addPass("clear", "slow_frames");
+    const auto target = pass.write(request.target, frame::Access::copyTarget, "black");
+    pass.execute([target](frame::PassContext& passContext) {
+      ran = true;
+      std::this_thread::sleep_for(std::chrono::milliseconds(100));
+      passContext.gl().ClearTexImage(passContext.texture(target).id(), 0, GL_RED, GL_FLOAT, nullptr);
+    });
+    return target;
+  }
+};
+
+inline constexpr TechniqueInfo kSlowFrames{.name = "slow_frames",
+                                           .title = "Slow frames",
+                                           .source = "a test",
+                                           .terms = termSet(Term::visibility),
+                                           .parameters = {},
+                                           .stress = {}};
+
+inline const TechniquePlugin kSlowFramesPlugin{
+    {},
+    &kSlowFrames,
+    [] { return std::span<const gpu::EmbeddedSource>(); },
+    []() -> std::unique_ptr<Technique> { return std::make_unique<SlowFrames>(); }};
 
 class PictureStudioTest : public testing::Test {
  protected:

@@ -49,37 +49,6 @@ const TechniquePlugin kOneFramePlugin{
     [] { return std::span<const gpu::EmbeddedSource>(); },
     []() -> std::unique_ptr<Technique> { return std::make_unique<OneFrame>(); }};
 
-/// Darkens everything, in frames that take so long that pictures are smaller while things move.
-class SlowFrames : public Technique {
- public:
-  static inline bool ran = false;
-
-  frame::TextureHandle addPasses(frame::FrameGraph& graph, const TechniqueInputs&,
-                                 const TermRequest& request) override {
-    frame::PassBuilder pass = graph.addPass("clear", "slow_frames");
-    const auto target = pass.write(request.target, frame::Access::copyTarget, "black");
-    pass.execute([target](frame::PassContext& passContext) {
-      ran = true;
-      std::this_thread::sleep_for(std::chrono::milliseconds(100));
-      passContext.gl().ClearTexImage(passContext.texture(target).id(), 0, GL_RED, GL_FLOAT, nullptr);
-    });
-    return target;
-  }
-};
-
-constexpr TechniqueInfo kSlowFrames{.name = "slow_frames",
-                                    .title = "Slow frames",
-                                    .source = "a test",
-                                    .terms = termSet(Term::visibility),
-                                    .parameters = {},
-                                    .stress = {}};
-
-const TechniquePlugin kSlowFramesPlugin{
-    {},
-    &kSlowFrames,
-    [] { return std::span<const gpu::EmbeddedSource>(); },
-    []() -> std::unique_ptr<Technique> { return std::make_unique<SlowFrames>(); }};
-
 /// A picture at rest takes more frames than the one that is shown at first. The window goes on where one of
 /// them fails, and does not try it over and over.
 TEST_F(PictureStudioTest, AFrameThatFailsAtRestIsSaid) {
@@ -161,7 +130,7 @@ TEST_F(PictureStudioTest, TwoPicturesAreShownTogether) {
   const glm::ivec2 before = order.size, after(20, 15);
   order.size = after;
   SlowFrames::ran = false;
-  studio.step(order, [] { return SlowFrames::ran; });
+  studio.step(order, [] { return SlowFrames::ran.load(); });
   EXPECT_TRUE(SlowFrames::ran);
   SceneQuestion missing;
   missing.scene = (folder / "missing.glb").string();

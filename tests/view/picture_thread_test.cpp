@@ -3,49 +3,14 @@
 
 #include <gtest/gtest.h>
 
-#include <atomic>
 #include <chrono>
 #include <filesystem>
-#include <memory>
-#include <span>
 #include <thread>
 
-#include "core/technique/technique.h"
 #include "tests/view/picture_studio_harness.h"
 
 namespace limn::app {
 namespace {
-
-/// Darkens everything, in frames that take long enough for something to happen meanwhile.
-class LongFrames : public Technique {
- public:
-  static inline std::atomic<bool> begun = false;
-
-  frame::TextureHandle addPasses(frame::FrameGraph& graph, const TechniqueInputs&,
-                                 const TermRequest& request) override {
-    frame::PassBuilder pass = graph.addPass("clear", "long_frames");
-    const auto target = pass.write(request.target, frame::Access::copyTarget, "black");
-    pass.execute([target](frame::PassContext& passContext) {
-      begun = true;
-      std::this_thread::sleep_for(std::chrono::milliseconds(300));
-      passContext.gl().ClearTexImage(passContext.texture(target).id(), 0, GL_RED, GL_FLOAT, nullptr);
-    });
-    return target;
-  }
-};
-
-constexpr TechniqueInfo kLongFrames{.name = "long_frames",
-                                    .title = "Long frames",
-                                    .source = "a test",
-                                    .terms = termSet(Term::visibility),
-                                    .parameters = {},
-                                    .stress = {}};
-
-const TechniquePlugin kLongFramesPlugin{
-    {},
-    &kLongFrames,
-    [] { return std::span<const gpu::EmbeddedSource>(); },
-    []() -> std::unique_ptr<Technique> { return std::make_unique<LongFrames>(); }};
 
 /// Waits until `arrived`, at most a minute.
 template <class Arrived>
@@ -65,12 +30,13 @@ TEST(PictureThread, SavesWhatWasOrderedBeforeItEnds) {
     order.scene.scene = file.string();
     order.size = {16, 12};
     order.techniques.push_back(
-        {&kLongFramesPlugin, ParameterValues(kLongFrames.name, kLongFrames.parameters)});
+        {&kSlowFramesPlugin, ParameterValues(kSlowFrames.name, kSlowFrames.parameters)});
     pictures.open({.scene = order.scene});
     ASSERT_TRUE(waitFor([&] { return pictures.facts()->scene != nullptr; })) << pictures.facts()->message;
     order.of = pictures.facts()->scene;
+    SlowFrames::ran = false;
     pictures.show(order);
-    ASSERT_TRUE(waitFor([] { return LongFrames::begun.load(); })) << pictures.facts()->picture.problem;
+    ASSERT_TRUE(waitFor([] { return SlowFrames::ran.load(); })) << pictures.facts()->picture.problem;
     pictures.save({.picture = order, .file = saved, .command = {}, .frames = {}});
   }
   EXPECT_TRUE(std::filesystem::exists(saved));
