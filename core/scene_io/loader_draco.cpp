@@ -141,6 +141,7 @@ void Loader::decodeDraco(Document& document) {
   }
   if (found.empty()) return;
   std::vector<DracoMesh> meshes;
+  meshes.reserve(found.size());
   for (const Compressed& primitive : found) meshes.push_back(primitive.mesh);
   std::string problem;
   try {

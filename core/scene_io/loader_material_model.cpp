@@ -3,6 +3,7 @@
 
 #include <algorithm>
 #include <array>
+#include <iterator>
 #include <variant>
 
 #include "core/base/error.h"
@@ -48,6 +49,7 @@ const std::vector<Choice>& choices() {
 template <class Range>
 std::string namesOf(const Range& entries) {
   std::vector<std::string> names;
+  names.reserve(std::size(entries));
   for (const auto& entry : entries) names.emplace_back(entry.name);
   return joined(names);
 }

@@ -347,8 +347,8 @@ void BumpInterreflection::importBases(frame::FrameGraph& graph, const TechniqueI
         fmt::format("the texels of flat surfaces with height maps take {} MiB, more than the {} MiB of a "
                     "storage buffer; ask for space=pixel, or smaller maps",
                     bytes >> 20, device.limits().maxStorageBlockBytes >> 20));
-  baseBuffers_.emplace(gpu::Buffer::of<glsl::FlatBase>(device, "flat bases", bases_.bases),
-                       gpu::Buffer::of<uint32_t>(device, "bases of instances", bases_.ofInstances));
+  baseBuffers_ = {gpu::Buffer::of<glsl::FlatBase>(device, "flat bases", bases_.bases),
+                  gpu::Buffer::of<uint32_t>(device, "bases of instances", bases_.ofInstances)};
   baseHandles_ = {.bases = graph.importBuffer("flat bases", baseBuffers_->bases),
                   .ofInstances = graph.importBuffer("bases of instances", baseBuffers_->ofInstances)};
 }
@@ -366,10 +366,10 @@ frame::TextureHandle BumpInterreflection::addPasses(frame::FrameGraph& graph, co
   const auto& [bases, ofInstances] = baseHandles_;
   Passes passes(graph, inputs, bases ? &bases_ : nullptr, bases, ofInstances, shared_);
   std::vector<uint32_t> lights(request.lights.begin(), request.lights.end());
-  const auto near = std::ranges::stable_partition(lights, [&](uint32_t light) {
+  const auto near = std::stable_partition(lights.begin(), lights.end(), [&](uint32_t light) {
     return baseHandles_.bases && inputs.pose.lights[light].type == glsl::light_directional;
   });
-  const auto far = static_cast<size_t>(near.begin() - lights.begin());
+  const auto far = static_cast<size_t>(near - lights.begin());
   frame::TextureHandle target = request.target;
   for (size_t first = 0, count = 0; first < lights.size(); first += count) {
     const bool texels = first < far;

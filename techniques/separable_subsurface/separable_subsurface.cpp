@@ -186,9 +186,9 @@ frame::TextureHandle SeparableSubsurface::addPasses(frame::FrameGraph& graph, co
                                            .taps = p.integer("taps"),
                                            .depthLimit = p.real("depth_limit")});
   gpu::Device& device = inputs.gpuScene.device();
-  buffers_.emplace(gpu::Buffer::of<glsl::LineMaterial>(device, "translucent materials", kernels.materials),
-                   gpu::Buffer::of<glsl::LineTap>(device, "taps of materials", kernels.taps),
-                   gpu::Buffer::of<uint32_t>(device, "rows of materials", kernels.rows));
+  buffers_ = {gpu::Buffer::of<glsl::LineMaterial>(device, "translucent materials", kernels.materials),
+              gpu::Buffer::of<glsl::LineTap>(device, "taps of materials", kernels.taps),
+              gpu::Buffer::of<uint32_t>(device, "rows of materials", kernels.rows)};
   return Passes(graph, inputs,
                 {.materials = graph.importBuffer("translucent materials", buffers_->materials),
                  .taps = graph.importBuffer("taps of materials", buffers_->taps),

@@ -339,10 +339,10 @@ TextureHandle SubsurfaceScattering::addPasses(frame::FrameGraph& graph, const Te
   gpu::Device& device = inputs.gpuScene.device();
   bodies_ = subsurface_scattering::findBodies(inputs.scene, inputs.pose, drawingFor(inputs.parameters),
                                               device.limits().maxStorageBlockBytes);
-  buffers_.emplace(gpu::Buffer::of<glsl::DiffusionBody>(device, "bodies", bodies_.bodies),
-                   gpu::Buffer::of<uint32_t>(device, "bodies of instances", bodies_.ofInstances),
-                   gpu::Buffer::of<glsl::DrawnPoint>(device, "points of bodies", bodies_.points),
-                   gpu::Buffer::of<glsl::PointDraw>(device, "draws of points", bodies_.draws));
+  buffers_ = {gpu::Buffer::of<glsl::DiffusionBody>(device, "bodies", bodies_.bodies),
+              gpu::Buffer::of<uint32_t>(device, "bodies of instances", bodies_.ofInstances),
+              gpu::Buffer::of<glsl::DrawnPoint>(device, "points of bodies", bodies_.points),
+              gpu::Buffer::of<glsl::PointDraw>(device, "draws of points", bodies_.draws)};
   Passes passes(graph, inputs, bodies_,
                 {.bodies = graph.importBuffer("bodies", buffers_->bodies),
                  .ofInstances = graph.importBuffer("bodies of instances", buffers_->ofInstances),

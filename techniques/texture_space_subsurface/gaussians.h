@@ -83,6 +83,7 @@ inline std::vector<Gaussian> fitGaussians(const scene::Profile& profile, int cou
       }
       if (!(wide > 0)) return best;
       std::vector<double> sigmas;
+      sigmas.reserve(static_cast<size_t>(count));
       for (int i = 0; i < count; ++i)
         sigmas.push_back(count > 1 ? narrow * std::pow(wide / narrow, i / (count - 1.0))
                                    : std::sqrt(narrow * wide));

@@ -316,11 +316,11 @@ TextureHandle TextureSpaceSubsurface::addPasses(frame::FrameGraph& graph, const 
         fmt::format("{} bodies have more charts or triangles than {} x {} texels and a buffer hold: "
                     "light leaves them where it enters",
                     textures.tooMany, texels, texels));
-  buffers_.emplace(gpu::Buffer::of<glsl::ChartCorner>(device, "corners of charts", textures.corners),
-                   gpu::Buffer::of<glsl::TexturedBody>(device, "bodies of textures", textures.bodies),
-                   gpu::Buffer::of<glsl::TexturedKind>(device, "kinds of matter", matter.kinds),
-                   gpu::Buffer::of<glsl::SurfaceGaussian>(device, "Gaussians of matter", matter.gaussians),
-                   gpu::Buffer::of<uint32_t>(device, "matter of materials", matter.ofMaterials));
+  buffers_ = {gpu::Buffer::of<glsl::ChartCorner>(device, "corners of charts", textures.corners),
+              gpu::Buffer::of<glsl::TexturedBody>(device, "bodies of textures", textures.bodies),
+              gpu::Buffer::of<glsl::TexturedKind>(device, "kinds of matter", matter.kinds),
+              gpu::Buffer::of<glsl::SurfaceGaussian>(device, "Gaussians of matter", matter.gaussians),
+              gpu::Buffer::of<uint32_t>(device, "matter of materials", matter.ofMaterials)};
   vertexArray_ = gpu::VertexArray(device, {});
   return Passes(graph, inputs, textures.ranges, first, matter.textured,
                 {.corners = graph.importBuffer("corners of charts", buffers_->corners),
