@@ -36,6 +36,18 @@ struct World {
     return static_cast<int>(scene.materials.size()) - 1;
   }
 
+  /// Clear glass with that index of refraction; thickness 0: a thin sheet.
+  int addClearGlass(float ior, float thickness = 1) {
+    const int material = addMaterial(glm::vec3(1));
+    scene::Material& glass = scene.materials.back();
+    glass.specularFactor = 1;
+    glass.roughness = 0;
+    glass.transmission = 1;
+    glass.thickness = thickness;
+    glass.ior = ior;
+    return material;
+  }
+
   int addMesh(scene::Primitive primitive) {
     for (const auto& p : primitive.positions) primitive.bounds.add(p);
     scene.meshes.emplace_back().primitives.push_back(std::move(primitive));

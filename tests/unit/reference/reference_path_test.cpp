@@ -116,14 +116,14 @@ TEST(ReferencePath, WhiteCornerInAUniformEnvironment) {
             kBoundOfMean);
 }
 
-const glm::vec3 lamp(0.2f, 1.4f, 0.8f), eye(0, 1.6f, 2.6f);
+const glm::vec3 kLamp(0.2f, 1.4f, 0.8f), kEye(0, 1.6f, 2.6f);
 
 /// A wall over the floor, a point light before both: the floor gets what the wall reflects.
 World wallOverFloor() {
   World world = floorWorld();
   world.addQuad({0, 1, -1}, {1.5f, 0, 0}, {0, 1.2f, 0}, world.addMaterial(glm::vec3(0.8f)));
-  world.addLight(glsl::light_point, lamp, {0, -1, 0}, glm::vec3(5));
-  world.camera = scene::lookAt(eye, {0, 0, 0.4f}, 0.6f);
+  world.addLight(glsl::light_point, kLamp, {0, -1, 0}, glm::vec3(5));
+  world.camera = scene::lookAt(kEye, {0, 0, 0.4f}, 0.6f);
   return world;
 }
 
@@ -135,13 +135,13 @@ double fromWallOverFloor(const glm::dvec3& x, const glsl::SurfaceBrdf& floor, co
   double sum = 0;
   for (int i = 0; i < n * n; ++i) {
     const glm::dvec3 y(-0.75 + 1.5 * (i % n + 0.5) / n, 0.4 + 1.2 * (i / n + 0.5) / n, -1);
-    const glm::dvec3 toLamp = glm::dvec3(lamp) - y, toWall = y - x;
+    const glm::dvec3 toLamp = glm::dvec3(kLamp) - y, toWall = y - x;
     const glm::vec3 l(glm::normalize(toLamp)), w(glm::normalize(toWall));
     const double irradiance = 5 * static_cast<double>(l.z) / glm::dot(toLamp, toLamp);
     const double geometry = std::max(static_cast<double>(w.y), 0.0) *
                             std::max(static_cast<double>(-w.z), 0.0) / glm::dot(toWall, toWall);
     sum += irradiance * geometry * static_cast<double>(glsl::brdf(wall, front, -w, l).r) *
-           static_cast<double>(glsl::brdf(floor, up, glm::vec3(glm::normalize(glm::dvec3(eye) - x)), w).r);
+           static_cast<double>(glsl::brdf(floor, up, glm::vec3(glm::normalize(glm::dvec3(kEye) - x)), w).r);
   }
   return sum * 1.5 * 1.2 / (n * n);
 }

@@ -17,17 +17,6 @@ using glm::vec3;
 
 constexpr double kAlbedo = 0.5, kIntensity = 20;
 
-int addGlass(World& world, float ior, float thickness = 1) {
-  const int material = world.addMaterial(vec3(1));
-  scene::Material& glass = world.scene.materials.back();
-  glass.specularFactor = 1;
-  glass.roughness = 0;
-  glass.transmission = 1;
-  glass.thickness = thickness;
-  glass.ior = ior;
-  return material;
-}
-
 int addMirror(World& world) {
   const int material = world.addMaterial(vec3(1));
   world.scene.materials.back().metallic = 1;
@@ -92,7 +81,7 @@ struct Slab {
   dvec3 eye{0.2, 0.1, 3};
 
   explicit Slab(float ior) : wall(world, {0, 0, -3}, {0, 0, 1}) {
-    const int glass = addGlass(world, ior);
+    const int glass = world.addClearGlass(ior);
     world.addInstance(world.addMesh(joined({World::quad({0, 0, 0.5f}, {6, 0, 0}, {0, 6, 0}, glass),
                                             World::quad({0, 0, -0.5f}, {6, 0, 0}, {0, -6, 0}, glass)})));
     world.camera = scene::lookAt(vec3(eye), vec3(eye) - vec3(0, 0, 1), 0.9f);
@@ -144,7 +133,7 @@ TEST(ReferenceSpecular, FresnelAtNormalIncidence) {
   for (const float ior : {1.33f, 1.5f, 2.42f}) {
     World world;
     const Wall wall(world, {0, 0, 4}, {0, 0, -1});
-    world.addQuad({0, 0, 0}, {6, 0, 0}, {0, 6, 0}, addGlass(world, ior));
+    world.addQuad({0, 0, 0}, {6, 0, 0}, {0, 6, 0}, world.addClearGlass(ior));
     world.camera = scene::lookAt({0, 0, 2}, {0, 0, 0}, 0.01f);
     const double reflectance = std::pow((double(ior) - 1) / (double(ior) + 1), 2);
     const Image image = render(specularRequest(world, 3, 2)).image;
@@ -192,7 +181,7 @@ TEST(ReferenceSpecular, GlassAbsorbsOverTheWayThroughIt) {
 TEST(ReferenceSpecular, AThinWallTintsAndDoesNotBend) {
   World world;
   const Wall wall(world, {0, 0, -3}, {0, 0, 1});
-  const int pane = addGlass(world, 1.5f, 0);
+  const int pane = world.addClearGlass(1.5f, 0);
   world.scene.materials[static_cast<size_t>(pane)].baseColour = {0.9f, 0.6f, 0.3f, 1};
   world.addQuad({0, 0, 0}, {6, 0, 0}, {0, 6, 0}, pane);
   const dvec3 eye(0.3, 0, 3);
@@ -216,7 +205,7 @@ void addPrism(World& world, int glass) {
 TEST(ReferenceSpecular, APrismReflectsTotally) {
   World world;
   const Wall wall(world, {4, 0, -1}, {-1, 0, 0});
-  addPrism(world, addGlass(world, 1.5f));
+  addPrism(world, world.addClearGlass(1.5f));
   world.camera = scene::lookAt({0, 0.2f, 3}, {0, 0.2f, 0}, 0.01f);
   EXPECT_EQ(render(specularRequest(world, 3, 2)).image.at(1, 1, 0), 0.f) << "it takes three interfaces";
   for (const int interfaces : {3, 8}) {
@@ -267,11 +256,11 @@ TEST(ReferenceSpecular, WithoutLimitAMatteThingInGlassIsSeenThroughItAlone) {
     world.camera = scene::lookAt({0, 0.1f, 0.5f}, {0, 0.1f, 0}, 0.01f);
   };
   World slab, prism;
-  const int glass = addGlass(slab, 1.5f);
+  const int glass = slab.addClearGlass(1.5f);
   slab.addInstance(slab.addMesh(joined({World::quad({0, 0, 0}, {6, 0, 0}, {0, 6, 0}, glass),
                                         World::quad({0, 0, -2}, {6, 0, 0}, {0, -6, 0}, glass)})));
   addPlate(slab, {0, 0, -1}, {1, 0, 0});
-  addPrism(prism, addGlass(prism, 1.5f));
+  addPrism(prism, prism.addClearGlass(1.5f));
   addPlate(prism, {0.5f, 0, -1}, {0, 0, 1});
   const auto seen = [](const World& world) {
     return double(render(specularRequest(world, 3, kAllInterfaces, 16384)).image.at(1, 1, 0));
@@ -289,7 +278,8 @@ TEST(ReferenceSpecular, WithoutLimitAMatteThingInGlassIsSeenThroughItAlone) {
 /// (Veach 1997, section 5.2).
 class Furnace {
  public:
-  explicit Furnace(float ior) : ior_(ior), glass_(addGlass(world, ior)), black_(world.addMaterial(vec3(0))) {
+  explicit Furnace(float ior)
+      : ior_(ior), glass_(world.addClearGlass(ior)), black_(world.addMaterial(vec3(0))) {
     world.scene.materials[static_cast<size_t>(glass_)].doubleSided = true;  // seen from within as well
     world.scene.materials[static_cast<size_t>(black_)].emission = vec3(ior * ior);
     world.scene.environment.width = 4;
