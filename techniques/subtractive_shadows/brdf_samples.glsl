@@ -14,9 +14,11 @@ ReflectedParts sampled_environment(SampledPixel p) {
   if (has_model(p.material)) return sampled_model(p.material, n, g, v, irradiance);
 #endif
   SurfaceBrdf s = p.material.brdf;
+  LtcTerms terms = ltc_lookup(dot(n, v), s.alpha);
   LobeLight light = LobeLight(vec3(0.0), vec3(0.0));
-  if (!brdf_is_lambertian(s)) light = sampled_lobe(s.alpha, n, g, v);
-  return reflected_lobe(s, ltc_lookup(dot(n, v), s.alpha), irradiance, light);
+  if (!brdf_is_lambertian(s))
+    light = sampled_lobe(s.alpha, n, g, v, samples_of_lobe(ltc_specular_reflectance(s, terms)));
+  return reflected_lobe(s, terms, irradiance, light);
 }
 
 #endif  // LIMN_BRDF_SAMPLES_GLSL

@@ -9,6 +9,7 @@
 #include "glsl/surface/surface_response.glsl"
 
 uniform int brdf_samples;
+uniform float full_reflectance;
 
 // Black below the horizon of the geometric normal g.
 vec3 radiance_of_sample(vec3 direction, float spread, vec3 g) {
@@ -22,14 +23,23 @@ struct LobeLight {
   vec3 grazing;
 };
 
+// Returns how many samples a lobe takes that reflects that share of its light. Its squared error goes with the square of what it
+// reflects over the number of samples: of a given number for all pixels the errors' sum is least where each pixel's goes with what it
+// reflects.
+int samples_of_lobe(vec3 reflectance) {
+  float most = max(max(reflectance.r, reflectance.g), reflectance.b);
+  float share = most < full_reflectance ? most / full_reflectance : 1.0;
+  return max(int(ceil(share * float(brdf_samples))), 1);
+}
+
 // n: shading normal; g: geometric one.
-LobeLight sampled_lobe(float alpha, vec3 n, vec3 g, vec3 v) {
+LobeLight sampled_lobe(float alpha, vec3 n, vec3 g, vec3 v, int samples) {
   Frame around = frame_towards(n, v);
   vec3 local = to_local(around, v);
   LobeLight light = LobeLight(vec3(0.0), vec3(0.0));
   vec2 weights = vec2(0.0);
-  for (int i = 0; i < brdf_samples; ++i) {
-    LobeSample l = lobe_sample(alpha, local, lobe_point(i, brdf_samples).xy, brdf_samples);
+  for (int i = 0; i < samples; ++i) {
+    LobeSample l = lobe_sample(alpha, local, lobe_point(i, samples).xy, samples);
     if (!(l.weight > 0.0)) continue;
     vec2 weight = l.weight * vec2(1.0 - l.schlick, l.schlick);
     vec3 radiance = radiance_of_sample(from_local(around, l.direction), l.spread, g);

@@ -25,7 +25,7 @@ void main() {
   }
 #endif
   float roughness = materials[index].roughness;
-  LobeLight light = sampled_lobe(max(roughness * roughness, brdf_min_alpha), n, n, v);
+  LobeLight light = sampled_lobe(max(roughness * roughness, brdf_min_alpha), n, n, v, brdf_samples);
   imageStore(radiance_cache, first, vec4(light.facing, 0.0));
   imageStore(radiance_cache, second, vec4(light.grazing, 0.0));
 }

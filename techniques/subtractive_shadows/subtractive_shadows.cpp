@@ -63,6 +63,9 @@ constexpr Parameter kParameters[] = {
     integer("brdf_samples", 32, {1, 1024}, "samples",
             "Samples of a lobe for the light without shadows, of a pixel or a texel of the cache")
         .logScale(),
+    real("full_reflectance", 0.125, {0, 1}, "",
+         "Share of its light from which a pixel's lobe reflects on with all brdf_samples; lobes that reflect "
+         "less have fewer, in proportion"),
     integer("unshadowed_factor", 16, {1, 64}, "times",
             "Samples of the light without shadows, over those that have shadows"),
     choice("sampling", importance, kSamplings,
@@ -104,6 +107,24 @@ constexpr StressCase kStress[] = {
     {.name = "the shadow buffer", .settings = "show=shadow_buffer", .factor = 0},
     {.name = "maps of 16 texels", .settings = "shadow_map_size=16", .factor = 8},
     {.name = "batches of one map", .settings = "shadow_map_size=2048 memory=32"},
+};
+
+/// What lobe_light.glsl takes its samples by, in passes with the unshadowed light.
+struct LobeSampling {
+  int samples = 0;  ///< 0: none
+  float fullReflectance = 0;
+
+  LobeSampling(const ParameterValues& p, Unshadowed unshadowed) {
+    if (unshadowed != brdfSamples) return;
+    samples = p.integer("brdf_samples");
+    fullReflectance = static_cast<float>(p.real("full_reflectance"));
+  }
+
+  void set(gpu::Program& program) const {
+    if (samples == 0) return;
+    program.set("brdf_samples", samples);
+    program.set("full_reflectance", fullReflectance);
+  }
 };
 
 class SubtractiveShadows : public Technique {
@@ -256,12 +277,13 @@ class SubtractiveShadows : public Technique {
         define(pass.program.defines);
         pass.bind = [&technique = technique_, bind = std::move(pass.bind),
                      light = everyPixel && batch.isLast(), shares = coats_ || batch.isLast(),
-                     samples = lobeSamples()](frame::PassContext& context, gpu::Program& program) {
+                     lobes = LobeSampling(inputs_.parameters, unshadowed_)](frame::PassContext& context,
+                                                                            gpu::Program& program) {
           bind(context, program);
           technique.setLights(program, shares);
           if (!light) return;
           technique.setPicture(program, 1);
-          if (samples > 0) program.set("brdf_samples", samples);
+          lobes.set(program);
         };
         pass.declare = [&, declare = std::move(pass.declare)](frame::PassBuilder& builder) {
           declare(builder);
@@ -357,11 +379,6 @@ class SubtractiveShadows : public Technique {
       if (unshadowed_ == cache) technique_.cache_.read(builder, inputs_, blocks_.side() > 1);
     }
 
-    /// Returns how many samples of a lobe passes with the unshadowed light take, 0: none.
-    int lobeSamples() const {
-      return unshadowed_ == brdfSamples ? inputs_.parameters.integer("brdf_samples") : 0;
-    }
-
     TextureHandle addResampling(TextureHandle target) {
       frame::PassBuilder builder = graph_.addPass("resample and subtract", info.name);
       builder.read(inputs_.handles.frame, Access::uniformBuffer, "FrameBlock", "camera, rotation, scale");
@@ -381,12 +398,13 @@ class SubtractiveShadows : public Technique {
       surfaces.define(desc.defines);
       medium.define(desc.defines);
       const auto program = builder.program(std::move(desc));
-      builder.execute([&technique = technique_, program, blocks = blocks_, samples = lobeSamples(),
+      builder.execute([&technique = technique_, program, blocks = blocks_,
+                       lobes = LobeSampling(inputs_.parameters, unshadowed_),
                        size = inputs_.size](frame::PassContext& context) {
         gpu::Program& used = context.use(program);
         blocks.bind(used);
         technique.setPicture(used, blocks.side());
-        if (samples > 0) used.set("brdf_samples", samples);
+        lobes.set(used);
         context.dispatch(size.x, size.y, 1, 8, 8);
       });
       return radiance;

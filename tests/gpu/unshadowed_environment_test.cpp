@@ -116,6 +116,26 @@ TEST_F(UnshadowedEnvironmentTest, UniformLightGivesTheReflectance) {
   }
 }
 
+/// In proportion to what they reflect, up to full_reflectance.
+TEST_F(UnshadowedEnvironmentTest, LobesThatReflectLessHaveFewerSamples) {
+  const scene::Material material = metal(kRoughnesses[1], vec3(0.4f));
+  const scene::Scene scene = floorOf(material, sky());
+  render::Renderer renderer(device(), scene);
+  const auto reflected = [&renderer](int samples, const char* full) {
+    return middle(light(renderer, "brdf_samples",
+                        {{"brdf_samples", std::to_string(samples)}, {"full_reflectance", full}}));
+  };
+  const glsl::SurfaceBrdf s = brdfOf(material);
+  const float reflectance = glsl::ltc_specular_reflectance(s, glsl::ltc_lookup(1, s.alpha)).x;
+  const vec3 ofAll = reflected(64, "0");
+  EXPECT_EQ(reflected(64, "0.25"), ofAll);
+  for (const auto& [full, name] : {std::pair{0.5f, "0.5"}, {1.f, "1"}}) {
+    const vec3 fewer = reflected(64, name);
+    EXPECT_EQ(fewer, reflected(static_cast<int>(std::ceil(64 * reflectance / full)), "0")) << full;
+    EXPECT_NE(fewer, ofAll) << full;
+  }
+}
+
 /// The smoothest metal shows the light along the mirror direction, a rougher one the sum over its lobe.
 /// Texels that cover as much as one of 32 samples of the widest lobe blur the slope of the light by 6 % of
 /// all light.
