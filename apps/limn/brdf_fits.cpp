@@ -204,14 +204,16 @@ int runBrdfFits(const BrdfFitsArguments& options) {
   const std::vector<brdf::FitSettings> fits = settingsOf(options);
   const BrdfSource source = openBrdf(options.choice);
   const std::vector<glm::dvec3> exact = albedosOf(brdf::responseOf(source.f), source.isotropic);
-  Progress progress("fits of " + source.name, 2);
   std::vector<FitRow> rows;
-  for (const brdf::FitSettings& settings : fits) {
-    progress.update(static_cast<double>(rows.size()) / static_cast<double>(fits.size()));
-    const brdf::FactoredBrdf fit = brdf::fitBrdf(source.f, settings);
-    rows.push_back(rowOf(
-        fit.name, [&](const glm::dvec3& l, const glm::dvec3& v) { return fit.evaluate(l, v); }, fit.error,
-        fit.bytes(), exact, source.isotropic));
+  {
+    Progress progress("fits of " + source.name, 2);
+    for (const brdf::FitSettings& settings : fits) {
+      progress.update(static_cast<double>(rows.size()) / static_cast<double>(fits.size()));
+      const brdf::FactoredBrdf fit = brdf::fitBrdf(source.f, settings);
+      rows.push_back(rowOf(
+          fit.name, [&](const glm::dvec3& l, const glm::dvec3& v) { return fit.evaluate(l, v); }, fit.error,
+          fit.bytes(), exact, source.isotropic));
+    }
   }
   if (options.kind.empty() && !source.isotropic) rows.push_back(pairsOf(source.f, exact));
   if (options.json) {

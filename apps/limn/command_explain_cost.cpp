@@ -47,8 +47,7 @@ Image referenceImage(const ExplainCostArguments& options, const session::View& v
 int runExplainCost(const ExplainCostArguments& options) {
   for (const fs::path& file : {options.out, options.json})
     if (!file.empty()) checkWritable(file);
-  checkApart({options.out, options.json},
-             {options.scene.scene, options.scene.environment, options.scene.grid});
+  checkApart({options.out, options.json}, filesRead(options.scene));
   const TechniqueRegistry registry(TechniqueRegistry::defaultFolders(), warn);
   render::Settings settings;
   settings.techniques = options.technique.resolve(registry);

@@ -69,18 +69,22 @@ class Sequence {
         context_(Context::create(options.backend.contextOptions())),
         device_(*context_),
         renderer_(device_, view_.scene) {
-    render::Settings settings;
-    settings.techniques = techniques;
-    settings.term = parseTerm(options.scene.term);
-    settings.size = view_.size;
-    settings.light = view_.light;
-    interfaces_ = render::interfacesOf(settings.term, techniques);
-    bounces_ = options.bounces.value_or(render::bouncesOf(settings.term, techniques));
-    renderer_.configure(settings);
+    settings_.techniques = techniques;
+    settings_.term = parseTerm(options.scene.term);
+    settings_.size = view_.size;
+    settings_.light = view_.light;
+    interfaces_ = render::interfacesOf(settings_.term, techniques);
+    bounces_ = options.bounces.value_or(render::bouncesOf(settings_.term, techniques));
+    renderer_.configure(settings_);
   }
 
   Frame at(double time) {
     session::moveTo(view_, options_.scene, time);
+    session::chooseLight(view_, options_.scene);
+    if (settings_.light != view_.light) {
+      settings_.light = view_.light;
+      renderer_.configure(settings_);
+    }
     renderer_.setTime(view_.time, view_.animation);
     Image picture = render::supersample(renderer_, view_.camera, view_.size, view_.aa);
     context_->throwErrors();
@@ -104,6 +108,7 @@ class Sequence {
   std::unique_ptr<Context> context_;
   gpu::Device device_;
   render::Renderer renderer_;
+  render::Settings settings_;
 };
 
 void print(const FlickerArguments& options, int frames, const Sums& sums, double ratio) {

@@ -122,6 +122,7 @@ int run(const fs::path& model, fs::path out) {
   if (out.extension() != ".glb")
     throw UsageError(fmt::format("--out {}: a file with the extension .glb is written", out.string()));
   checkApart({out}, {model});
+  checkWritable(out);
   if (!programExists(kConverter))
     throw Error(
         "models of other formats are read by assimp, which is not installed: apt-get install assimp-utils");
@@ -129,7 +130,6 @@ int run(const fs::path& model, fs::path out) {
   const LastWords words(kInterrupted);
   const Interruption interruption;  // assimp and what it has half-written go before the program
   const std::string information = assimp({"info", model.string()}, model, interruption);
-  removeAbandonedFiles(fs::absolute(out).parent_path());
   TemporaryFile part(out);
   assimp({"export", model.string(), part.path().string(), "-fglb2", "-tri", "-gsn"}, model, interruption);
   scene::Scene scene;

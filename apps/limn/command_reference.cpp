@@ -90,35 +90,39 @@ int runAtVertices(const ReferenceArguments& options, const session::View& view, 
   return 0;
 }
 
-int runReference(const ReferenceArguments& options) {
-  checkExtension("--out", options.out, {".exr", ".png"});
-  checkWritable(options.out);
-  checkApart({options.out}, {options.scene.scene, options.scene.environment});
-  const session::View view = session::open(options.scene, warn);
-  reference::Request request = makeRequest(options, view);
-  loadPictureLibrary();
-  if (options.atVertices) return runAtVertices(options, view, request);
+/// Renders it until it is done or an interruption asks for its end; the bar has gone then.
+reference::Result renderReference(const ReferenceArguments& options, reference::Request request,
+                                  const Interruption& interruption) {
   Progress progress("reference");
-  const Interruption interruption;
   request.progress = [&](const reference::Progress& state) {
     progress.update(state.fraction, fmt::format("{} spp, noise {:.4f}, {:.0f} s left", state.spp, state.noise,
                                                 state.secondsLeft));
     return !interruption.asked();
   };
-  reference::Result result;
   try {
-    if (options.cache.empty()) {
-      const FileLock lock(beside(options.out, ".lock"), options.out.string());
-      request.checkpoint = beside(options.out, ".checkpoint");
-      result = reference::render(request);
-    } else {
+    if (!options.cache.empty()) {
       removeAbandonedFiles(options.cache);
-      result = reference::Cache(options.cache, warn, bench::machineName()).render(request);
+      return reference::Cache(options.cache, warn, bench::machineName()).render(request);
     }
+    const FileLock lock(beside(options.out, ".lock"), options.out.string());
+    request.checkpoint = beside(options.out, ".checkpoint");
+    return reference::render(request);
   } catch (const Error& stopped) {
     if (!interruption.asked()) throw;
     throw Interrupted{interruption.signal(), std::string(stopped.what()) + "; the same command goes on"};
   }
+}
+
+int runReference(const ReferenceArguments& options) {
+  checkExtension("--out", options.out, {".exr", ".png"});
+  checkWritable(options.out);
+  checkApart({options.out}, filesRead(options.scene));
+  const session::View view = session::open(options.scene, warn);
+  reference::Request request = makeRequest(options, view);
+  loadPictureLibrary();
+  if (options.atVertices) return runAtVertices(options, view, request);
+  const Interruption interruption;  // until the picture is written: all its samples are in it alone
+  reference::Result result = renderReference(options, request, interruption);
   sign(result.image);
   writePicture(options.out, result.image, options.tone.toneMapping(options.out, result.image));
   fmt::print("{}: {} samples per pixel, noise {:.5f} of the mean\n", options.out.string(), result.spp,

@@ -190,9 +190,13 @@ int runRender(const RenderArguments& options) {
   checkShaderFolder(options.shaders);
   for (const fs::path& file : {options.out, options.stats, options.graph})
     if (!file.empty()) checkWritable(file);
-  checkApart({options.out, options.stats, options.graph},
-             {options.scene.scene, options.scene.environment, options.scene.grid});
   const auto frames = parseFrames(options.frames);
+  std::vector<fs::path> others = filesRead(options.scene);
+  checkApart({options.out, options.stats, options.graph}, others);
+  if (frames && !isMovie(options.out)) {
+    others.insert(others.end(), {options.stats, options.graph});
+    checkFramesApart(options.out, *frames, others);
+  }
   const TechniqueRegistry registry(TechniqueRegistry::defaultFolders(), warn);
   render::Settings settings;
   settings.techniques = options.technique.resolve(registry);
@@ -220,6 +224,11 @@ int runRender(const RenderArguments& options) {
     Progress progress("rendering");
     const auto frameAt = [&](int frame) {
       session::moveTo(view, options.scene, frame / options.fps);
+      session::chooseLight(view, options.scene);
+      if (settings.light != view.light) {
+        settings.light = view.light;
+        renderer.configure(settings);
+      }
       renderer.setTime(view.time, view.animation);
       Image picture = render::supersample(renderer, view.camera, view.size, view.aa);
       progress.update(double(frame - frames->first + 1) / (frames->last - frames->first + 1));

@@ -63,9 +63,8 @@ LastWords::LastWords(const std::string& line) : formerLine_(words) {
 }
 
 void LastWords::say(const std::string& line) {
-  const char* begin = isatty(STDERR_FILENO) != 0 ? "\r\033[K" : "";  // over a progress bar
   constexpr std::size_t longest = 1000;
-  setWords(begin + ("limn: " + line).substr(0, longest) + "\n");
+  setWords(lineBeginning() + ("limn: " + line).substr(0, longest) + "\n");
 }
 
 LastWords::~LastWords() {

@@ -80,10 +80,7 @@ void checkMovieProgram() {
 }
 
 Movie::Movie(fs::path file, double fps, std::string command)
-    : file_(std::move(file)), fps_(fps), command_(std::move(command)) {
-  removeAbandonedFiles(fs::absolute(file_).parent_path());
-  part_.emplace(file_);
-}
+    : file_(std::move(file)), part_(file_), fps_(fps), command_(std::move(command)) {}
 
 Movie::~Movie() {
   closeInput();
@@ -123,7 +120,7 @@ void Movie::start(int width, int height) {
                                         fmt::format("description=limn {}", version())};
   const std::vector<std::string>& of = kindOf(file_)->arguments;
   arguments.insert(arguments.end(), of.begin(), of.end());
-  arguments.push_back("file:" + part_->path().string());
+  arguments.push_back("file:" + part_.path().string());
   try {
     process_ = startProgram(kEncoder, arguments, {ends[1], -1, words_});
   } catch (...) {
@@ -155,7 +152,7 @@ void Movie::add(const Image8& frame) {
 void Movie::finish() {
   closeInput();
   if (const std::string ending = awaitProgram(std::exchange(process_, 0)); !ending.empty()) fail(ending);
-  part_->keep();
+  part_.keep();
 }
 
 }  // namespace limn::app

@@ -4,7 +4,6 @@
 #include <sys/types.h>
 
 #include <filesystem>
-#include <optional>
 #include <string>
 
 #include "core/base/file.h"
@@ -39,7 +38,7 @@ class Movie {
   void closeInput();
 
   std::filesystem::path file_;
-  std::optional<TemporaryFile> part_;
+  TemporaryFile part_;
   double fps_;
   std::string command_;
   pid_t process_ = 0;  ///< 0: not started, or ended

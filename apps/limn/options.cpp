@@ -2,6 +2,7 @@
 
 #include <fcntl.h>
 #include <fmt/format.h>
+#include <sys/ioctl.h>
 #include <unistd.h>
 
 #include <algorithm>
@@ -21,6 +22,7 @@
 #include "core/base/failure.h"
 #include "core/base/file.h"
 #include "core/base/text.h"
+#include "core/session/view.h"
 
 namespace limn::app {
 namespace fs = std::filesystem;
@@ -36,6 +38,25 @@ void holdStandardFiles() {
     if (fcntl(file, F_GETFD) >= 0) continue;
     [[maybe_unused]] const int held = open("/dev/null", file == STDERR_FILENO ? O_WRONLY : O_RDONLY);
   }
+}
+
+/// One name of a file, whatever leads to it.
+fs::path placeOf(const fs::path& file) {
+  std::error_code unknown;
+  return fs::weakly_canonical(fs::absolute(file, unknown), unknown);
+}
+
+[[noreturn]] void refuseSameFile(const fs::path& file) {
+  throw UsageError(
+      fmt::format("{}: cannot be written: another argument names the same file, or a scene that reads it",
+                  file.string()));
+}
+
+/// How many columns the terminal behind stderr has.
+std::size_t terminalColumns() {
+  constexpr std::size_t usual = 80;
+  winsize size{};
+  return ioctl(STDERR_FILENO, TIOCGWINSZ, &size) == 0 && size.ws_col > 0 ? size.ws_col : usual;
 }
 
 }  // namespace
@@ -54,19 +75,23 @@ void checkWritable(const fs::path& file) {
   const fs::path folder = file.has_parent_path() ? file.parent_path() : ".";
   if (access(folder.c_str(), W_OK | X_OK) != 0)
     throw Error(fmt::format("{}: cannot be written: {}", file.string(), std::strerror(errno)));
+  removeAbandonedFiles(folder);
 }
 
 void checkApart(const std::vector<fs::path>& written, const std::vector<fs::path>& read) {
   std::set<fs::path> taken;
-  const auto take = [&](const fs::path& file) {
-    std::error_code unknown;
-    return file.empty() || taken.insert(fs::weakly_canonical(fs::absolute(file, unknown), unknown)).second;
-  };
+  const auto take = [&](const fs::path& file) { return file.empty() || taken.insert(placeOf(file)).second; };
   for (const fs::path& file : read) take(file);
   for (const fs::path& file : written)
-    if (!take(file))
-      throw UsageError(
-          fmt::format("{}: cannot be written: another argument names the same file", file.string()));
+    if (!take(file)) refuseSameFile(file);
+}
+
+std::vector<fs::path> filesRead(const SceneQuestion& question) {
+  try {
+    return session::inputFiles(question);
+  } catch (const Error&) {
+    return {};
+  }
 }
 
 void checkExtension(const char* option, const fs::path& file, const std::vector<std::string>& extensions) {
@@ -119,6 +144,18 @@ std::optional<FrameRange> parseFrames(const std::string& text) {
 
 fs::path numbered(const fs::path& out, int frame) {
   return out.parent_path() / fmt::format("{}.{:04}{}", out.stem().string(), frame, out.extension().string());
+}
+
+void checkFramesApart(const fs::path& out, const FrameRange& frames, const std::vector<fs::path>& others) {
+  for (const fs::path& other : others) {
+    const fs::path place = placeOf(other);
+    const std::string name = place.stem().string();  // picture.0007
+    const std::size_t dot = name.rfind('.');
+    const auto frame =
+        dot == std::string::npos ? std::nullopt : parseWhole<int>(std::string_view(name).substr(dot + 1));
+    if (!frame || *frame < frames.first || *frame > frames.last) continue;
+    if (const fs::path file = numbered(out, *frame); placeOf(file) == place) refuseSameFile(file);
+  }
 }
 
 void addTechniqueFlags(CLI::App& command, session::TechniqueChoice& choice) {
@@ -176,12 +213,20 @@ void printAsJson(const nlohmann::ordered_json& json) {
   fmt::print("{}\n", json.dump(2, ' ', false, nlohmann::ordered_json::error_handler_t::replace));
 }
 
+const char* lineBeginning() {
+  return isatty(STDERR_FILENO) != 0 ? "\r\033[K" : "";
+}
+
+void sayNote(const std::string& line) {
+  std::fputs((lineBeginning() + line + "\n").c_str(), stderr);
+}
+
 void warn(const std::string& message) {
-  std::fputs(("limn: warning: " + message + "\n").c_str(), stderr);
+  sayNote("limn: warning: " + message);
 }
 
 void sayError(const std::string& message) {
-  dprintf(errorFile, "limn: %s\n", oneLine(message, 4000).c_str());
+  dprintf(errorFile, "%slimn: %s\n", lineBeginning(), oneLine(message, 4000).c_str());
 }
 
 int errorDescriptor() {
@@ -229,7 +274,7 @@ void sayInTerminal(const std::string& line) {
 }
 
 void sayWritten(const fs::path& file) {
-  std::fputs(fmt::format("wrote {}\n", file.string()).c_str(), stderr);
+  sayNote("wrote " + file.string());
 }
 
 Progress::Progress(std::string label, double patience)
@@ -247,8 +292,11 @@ void Progress::update(double fraction, const std::string& note) {
   if (terminal_) {
     constexpr int width = 30;
     const std::string bar(static_cast<size_t>(percent * width / 100), '#');
-    std::fputs(fmt::format("\r{} [{:<{}}] {:3}% {}\033[K", label_, bar, width, percent, note).c_str(),
-               stderr);
+    // A longer line would go on in the next one, where the bar after it could not take its place.
+    constexpr std::size_t ellipsis = 3, least = 8;
+    const std::size_t room = std::max(terminalColumns(), least) - 1 - ellipsis;
+    const std::string line = fmt::format("{} [{:<{}}] {:3}% {}", label_, bar, width, percent, note);
+    std::fputs(("\r" + oneLine(line, room) + "\033[K").c_str(), stderr);
   } else if ((percent / 10 > lastShown_ / 10 || lastShown_ < 0) &&
              std::chrono::steady_clock::now() >= silentUntil_) {
     std::fputs(fmt::format("{}: {}% {}\n", label_, percent, note).c_str(), stderr);

@@ -36,13 +36,17 @@ CLI::Validator wholeRange(int low, int high);
 std::filesystem::path programBeside(const std::string& name);
 
 /// Throws Error unless files can be written beside `file`. It is called before long work, whose result would
-/// be lost otherwise.
+/// be lost otherwise. Removes what killed commands have left there (removeAbandonedFiles()).
 void checkWritable(const std::filesystem::path& file);
 
 /// Throws UsageError where two of the files that are to be written are one, or one of them is a file that is
 /// read: one of the two would be lost. Empty names stand for no file.
 void checkApart(const std::vector<std::filesystem::path>& written,
                 const std::vector<std::filesystem::path>& read = {});
+
+/// Returns the files that the question's scene is read from, for checkApart(); none where the scene cannot be
+/// opened, which then says why before anything is written.
+std::vector<std::filesystem::path> filesRead(const SceneQuestion& question);
 
 /// Throws UsageError unless the name ends in one of `extensions`, such as ".png". `option` is what gave it.
 void checkExtension(const char* option, const std::filesystem::path& file,
@@ -64,6 +68,9 @@ struct FrameRange {
 std::optional<FrameRange> parseFrames(const std::string& text);
 /// Returns the file name of one frame: picture.png, frame 7 -> picture.0007.png.
 std::filesystem::path numbered(const std::filesystem::path& out, int frame);
+/// Throws UsageError where one of these frames would take the place of one of `others`.
+void checkFramesApart(const std::filesystem::path& out, const FrameRange& frames,
+                      const std::vector<std::filesystem::path>& others);
 
 /// Makes an option repeatable, with one value each time. CLI11 would take what follows for further values, a
 /// scene as well.
@@ -85,6 +92,12 @@ struct BackendOptions {
   /// Returns the arguments that give these options; those that are the default are left out.
   std::vector<std::string> arguments() const;
 };
+
+/// Returns what a line on stderr begins with: on a terminal a progress bar may stand where it is written.
+const char* lineBeginning();
+
+/// Writes a line to stderr that is neither a result nor an error.
+void sayNote(const std::string& line);
 
 /// Writes a warning to stderr, in one line: something unusual that does not end the run.
 void warn(const std::string& message);
@@ -124,8 +137,8 @@ void sayWritten(const std::filesystem::path& file);
 /// Holds the patience, in seconds, of Progress with work that is mostly short.
 constexpr double kProgressPatience = 1;
 
-/// Shows progress on stderr: a bar on a terminal, elsewhere plain lines (at most one every 10 %, none in the
-/// first `patience` seconds).
+/// Shows progress on stderr: a bar of at most a line on a terminal, elsewhere plain lines (at most one every
+/// 10 %, none in the first `patience` seconds).
 class Progress {
  public:
   explicit Progress(std::string label, double patience = 0);

@@ -3,8 +3,6 @@
 #include <fmt/format.h>
 #include <fmt/ranges.h>
 
-#include <cstdio>
-
 #include "apps/limn/options.h"
 #include "core/base/text.h"
 
@@ -54,8 +52,7 @@ ToneMapping ToneFlags::fixed() const {
 ToneMapping ToneFlags::toneMapping(const std::filesystem::path& file, const Image& picture) const {
   if (!automatic()) return fixed();
   const ToneMapping tone{automaticExposure(picture), curve};
-  if (file.extension() == ".png")
-    std::fputs(fmt::format("exposure {:.3f} EV\n", tone.exposureEv).c_str(), stderr);
+  if (file.extension() == ".png") sayNote(fmt::format("exposure {:.3f} EV", tone.exposureEv));
   return tone;
 }
 

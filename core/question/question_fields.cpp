@@ -230,7 +230,7 @@ std::vector<std::string> asTexts(const std::vector<std::string>& values) {
   return values;
 }
 std::vector<std::string> asTexts(double value) {
-  return {fmt::format("{}", value)};
+  return {fmt::format("{}", value + 0.0)};  // -0 asks for the same as 0
 }
 std::vector<std::string> asTexts(int value) {
   return {fmt::format("{}", value)};

@@ -10,8 +10,6 @@
 #include "core/base/version.h"
 #include "core/question/technique_names.h"
 #include "core/reference/reference.h"
-#include "core/scene_io/load.h"
-#include "core/session/find.h"
 #include "core/session/view.h"
 
 namespace limn::session {
@@ -19,27 +17,6 @@ namespace fs = std::filesystem;
 namespace {
 
 constexpr const char* kMissing = "missing";
-
-/// Adds what is read with default lights; where it is not installed, a scene that wants them says so when it
-/// is measured.
-void addDefaultEnvironment(std::vector<fs::path>& files) {
-  try {
-    files.push_back(findDefaultEnvironment());
-  } catch (const Error&) {
-  }
-}
-
-/// Returns everything that is read from disk before the case can be seen.
-std::vector<fs::path> inputFiles(const bench::Case& c) {
-  std::vector<fs::path> files = scene::filesOf(findScene(c.scene));
-  if (!c.environment.empty())
-    files.push_back(findEnvironment(c.environment));
-  else if (c.defaultLights != "off")  // whether they are wanted is known once the scene is loaded
-    addDefaultEnvironment(files);
-  const std::string& grid = c.grid;
-  if (!grid.empty() && grid != "smoke" && grid != "none") files.emplace_back(grid);
-  return files;
-}
 
 /// Returns the program and limn's libraries, each of which is told by a function that it has.
 std::vector<fs::path> programFiles() {

@@ -276,8 +276,7 @@ static void setPicture(const SceneQuestion& question, View& view) {
   view.subsurface = subsurfaceModelOf(question.subsurface);
 }
 
-/// --light.
-static void chooseLight(const SceneQuestion& question, View& view) {
+void chooseLight(View& view, const SceneQuestion& question) {
   view.light =
       question.light.empty() ? scene::kNone : findNamed("light", question.light, view.pose.lightNames);
 }
@@ -314,8 +313,28 @@ View open(const SceneQuestion& question, const Warn& warn) {
     view.scene.environment = scene::loadEnvironment(findDefaultEnvironment(), view.scene.warnings);
   relight(view, question);
   warnOfOpaqueMedium(view, warn);
-  chooseLight(question, view);
+  chooseLight(view, question);
   return view;
+}
+
+/// Adds what is read with default lights; where it is not installed, a scene that wants them says so when it
+/// is opened.
+static void addDefaultEnvironment(std::vector<std::filesystem::path>& files) {
+  try {
+    files.push_back(findDefaultEnvironment());
+  } catch (const Error&) {
+  }
+}
+
+std::vector<std::filesystem::path> inputFiles(const SceneQuestion& question) {
+  std::vector<std::filesystem::path> files = scene::filesOf(findScene(question.scene));
+  if (!question.environment.empty())
+    files.push_back(findEnvironment(question.environment));
+  else if (question.defaultLights != "off")  // whether they are wanted is known once the scene is loaded
+    addDefaultEnvironment(files);
+  const std::string& grid = question.grid;
+  if (!grid.empty() && grid != "smoke" && grid != "none") files.emplace_back(grid);
+  return files;
 }
 
 SceneQuestion openedScene(const SceneQuestion& question) {
@@ -333,7 +352,7 @@ bool show(View& view, const SceneQuestion& shown, const SceneQuestion& asked) {
     relight(view, asked);
   else
     view.camera = chooseCamera(asked, view.pose, view.framing);
-  chooseLight(asked, view);
+  chooseLight(view, asked);
   return relit;
 }
 

@@ -1,6 +1,7 @@
 // Declares how a question is turned into a scene with the lights, camera, time and size that it names.
 #pragma once
 
+#include <filesystem>
 #include <glm/vec2.hpp>
 #include <glm/vec3.hpp>
 #include <string>
@@ -52,6 +53,11 @@ struct View {
 /// Error.
 LIMN_API View open(const SceneQuestion& question, const Warn& warn = {});
 
+/// Returns the files that open() reads: the scene's own and those it names, the environment (that of the
+/// default lights where they may be wanted) and the grid. Throws Error where the scene or the environment
+/// does not exist.
+LIMN_API std::vector<std::filesystem::path> inputFiles(const SceneQuestion& question);
+
 /// Gives the scene the lights of the question (--light-size, --default-lights, --set-light and the
 /// environment's rotation and scale), starting from those of its file; sets pose and camera at view.time.
 /// Writes to materials and to the environment only where something changes. Throws UsageError for lights that
@@ -62,6 +68,11 @@ LIMN_API void relight(View& view, const SceneQuestion& question);
 /// that time: default lights follow the camera; lights of which --set-light sets the position or rotation
 /// alone, and those that have no area at the start of an animation, the time.
 LIMN_API void moveTo(View& view, const SceneQuestion& question, double time);
+/// Sets the number of the light that the question chooses (--light) among those of the pose: an animation
+/// that makes a lamp none, as one that skews it does, moves the numbers of those behind it. Throws UsageError
+/// where there is no such light.
+LIMN_API void chooseLight(View& view, const SceneQuestion& question);
+
 /// Says whether moveTo() would call relight(), which may write to materials.
 LIMN_API bool movingRelights(const View& view, const SceneQuestion& question, double time);
 

@@ -153,6 +153,7 @@ TEST_F(BadOutput, NoFileIsWrittenTwiceOrReadAsWell) {
   EXPECT_FALSE(fs::exists(picture));
   refused({"render", kCornellBox, "--environment", map, "--out", map}, "map.exr");
   refused({"reference", kCornellBox, "--environment", map, "--out", map}, "map.exr");
+  refused({"reference", kCornellBox, "--grid", map, "--out", map}, "map.exr");
   refused({"environment", map, "--overlay", map}, "map.exr");
   ASSERT_EQ(write("render", picture).status, 0);
   refused({"compare", picture, map, "--diff", picture}, "a.png");
@@ -161,6 +162,52 @@ TEST_F(BadOutput, NoFileIsWrittenTwiceOrReadAsWell) {
   for (const fs::path& file : {rows, claims})
     refused({"reproduction", folder_.path(), "--claims", claims, "--out", file}, file.filename());
   EXPECT_EQ(contents(map), before);
+}
+
+/// A scene's pictures lie beside it, where those that are rendered of it may be wanted.
+TEST_F(BadOutput, WhatASceneReadsStays) {
+  GltfBuilder builder;
+  builder.append("images", {{"uri", "bricks.png"}});
+  builder.append("textures", {{"source", 0}});
+  builder.triangle(
+      builder.append("materials", {{"pbrMetallicRoughness", {{"baseColorTexture", {{"index", 0}}}}}}));
+  const std::vector<std::byte> scene = builder.glb(), bricks = png(1, 1, {1, 2, 3, 4});
+  const auto put = [&](const char* name, const std::vector<std::byte>& bytes) {
+    std::ofstream(folder_ / name, std::ios::binary)
+        .write(reinterpret_cast<const char*>(bytes.data()), static_cast<std::streamsize>(bytes.size()));
+  };
+  put("wall.glb", scene);
+  put("bricks.png", bricks);
+  const std::string before = contents(folder_ / "bricks.png");
+  for (const char* command : {"render", "reference"})
+    expectRefused(limn({command, folder_ / "wall.glb", "--size", "8x8", "--out", folder_ / "./bricks.png"}),
+                  2, {"bricks.png", "another argument names the same file"});
+  EXPECT_EQ(contents(folder_ / "bricks.png"), before);
+}
+
+TEST_F(BadOutput, NoFrameTakesThePlaceOfAnotherFile) {
+  const fs::path map = folder_ / "sky.0002.exr", stats = folder_ / "a.0001.png";
+  ASSERT_EQ(write("render", map).status, 0);
+  const std::string before = contents(map);
+  const auto frames = [&](const char* range, const char* out, const std::vector<std::string>& more) {
+    std::vector<std::string> all{"render",   kCornellBox, "--size", "8x8",
+                                 "--frames", range,       "--out",  folder_ / out};
+    all.insert(all.end(), more.begin(), more.end());
+    return limn(all);
+  };
+  expectRefused(frames("3", "sky.exr", {"--environment", map}), 2,
+                {"sky.0002.exr", "another argument names the same file"});
+  expectRefused(frames("1:1", "a.png", {"--stats", stats}), 2, {"a.0001.png", "the same file"});
+  EXPECT_EQ(listing(folder_.path()), std::vector<std::string>{"sky.0002.exr"});
+  EXPECT_EQ(contents(map), before);
+  EXPECT_EQ(frames("0:1", "a.png", {"--stats", folder_ / "a.0002.png"}).status, 0) << "not one of them";
+}
+
+/// As where a command was killed while it wrote: nobody else would look for it.
+TEST_F(BadOutput, WhatAKilledCommandLeftGoesWithTheNextOne) {
+  for (const char* name : {".a.exr.0123456789abcdef.part", ".mine.part"}) std::ofstream(folder_ / name) << 1;
+  ASSERT_EQ(write("render", folder_ / "a.png").status, 0);
+  EXPECT_EQ(listing(folder_.path()), (std::vector<std::string>{".mine.part", "a.png"}));
 }
 
 TEST_F(BadOutput, FullDisk) {

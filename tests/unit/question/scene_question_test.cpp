@@ -244,6 +244,11 @@ TEST(SceneQuestion, DocumentationHasTheirLines) {
   }
 }
 
+TEST(SceneQuestion, MinusNoughtIsNought) {
+  EXPECT_EQ(rowKey(caseOf({.time = -0.0}), ""), rowKey(caseOf({.time = 0.0}), ""));
+  EXPECT_EQ(printed(questionField("time"), {.time = -0.0}), std::vector<std::string>{"0"});
+}
+
 TEST(SceneQuestion, FieldsAreCopiedByTheirEffect) {
   for (const QuestionField& field : questionFields()) {
     const SceneQuestion standard;

@@ -3,12 +3,14 @@
 
 #include <cmath>
 
+#include "core/base/error.h"
 #include "core/base/file.h"
 #include "core/scene/camera.h"
 #include "core/session/light_edits.h"
 #include "core/session/view.h"
 #include "tests/support/gltf_builder.h"
 #include "tests/support/paths.h"
+#include "tests/support/skewed_lamp.h"
 
 namespace limn::session {
 namespace {
@@ -159,6 +161,23 @@ TEST(Relight, LampsThatAreNoLightsAtRestAreTheSameHoweverTheirTimeWasReached) {
   View view = open(question);
   moveTo(view, question, std::nextafter(2., 1.));
   expectAsOpened(view, question, "turned by 90 degrees");
+}
+
+/// A lamp that is turned below a node that stretches is skewed, and no rectangle.
+TEST(Relight, TheChosenLightIsTheSameOneWhereALampBeforeItIsNone) {
+  test::GltfBuilder b;
+  test::addSkewedLamp(b, true);
+  SceneQuestion question;
+  question.scene = testing::TempDir() + "skewed_lamp.glb";
+  writeFile(question.scene, b.glb());
+  question.light = "chosen";
+  View view = open(question);
+  EXPECT_EQ(view.light, 1);
+  moveTo(view, question, 0.5);
+  chooseLight(view, question);
+  EXPECT_EQ(view.light, 0);
+  question.light = "lamp";
+  EXPECT_THROW(chooseLight(view, question), UsageError);
 }
 
 /// Default lights stand where the command's camera stands, however it was reached.
