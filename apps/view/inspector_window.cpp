@@ -80,6 +80,9 @@ void ViewerWindow::inspectorChoices(const frame::PassReport& pass) {
   const frame::AccessReport& shown = pass.accesses[wanted.texture.access];
   const gpu::TextureDesc desc = gpu::resolved(*shown.texture);
   const gpu::FormatInfo format = gpu::formatInfo(desc.format);
+  // A parameter may have given the texture another format, without that channel.
+  if (wanted.view.channel < 4 ? wanted.view.channel >= format.components : format.components < 3)
+    wanted.view.channel = 0;
   const auto title = [](const frame::AccessReport& access) {
     return fmt::format("{} {}", access.write ? "writes" : "reads", access.resource);
   };

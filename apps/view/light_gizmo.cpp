@@ -72,8 +72,8 @@ void ViewerWindow::chooseLight(int light) {
   drag_.reset();
 }
 
-/// Finds the chosen light in the newest facts: those behind a mesh that an animation has scaled to nothing
-/// have other numbers there.
+/// Finds the chosen light in the newest facts: those behind a mesh that an animation has skewed, which is no
+/// rectangle then, have other numbers there.
 void ViewerWindow::findChosenLight() {
   const auto found = std::ranges::find(facts_->lights, chosenName_, &LightFacts::name);
   const bool gone = chosenName_.empty() || found == facts_->lights.end();

@@ -17,7 +17,9 @@ void checkFiles(const ViewerOptions& options, bool saved) {
   checkExtension("--save", options.save, {".exr", ".png"});
   if (!options.screenshot.empty()) checkExtension("--screenshot", options.screenshot, {".png"});
   std::filesystem::path save = saved ? options.save : std::filesystem::path();
-  checkApart({save, options.screenshot, options.stats}, {options.scene.scene, options.scene.environment});
+  std::vector<std::filesystem::path> read = filesRead(options.scene);
+  read.emplace_back(options.scene.environment);  // also where the scene is chosen later
+  checkApart({save, options.screenshot, options.stats}, read);
   std::error_code ignored;
   while (save.has_parent_path() && !std::filesystem::exists(save.parent_path(), ignored))
     save = save.parent_path();

@@ -124,11 +124,13 @@ void PictureStudio::open(const OpenOrder& order) {
   try {
     auto view = std::make_shared<session::View>(session::open(wanted, warn));
     auto picture = makePicture(*view);
+    std::vector<std::filesystem::path> files = filesRead(wanted);
     reference_.stop();
     truthKey_.clear();
     other_.reset();
     picture_ = std::move(picture);
     view_ = std::move(view);
+    files_ = std::move(files);
     placed_ = wanted;
     rendered_.reset();
     facts_.settled = false;
@@ -190,8 +192,7 @@ void PictureStudio::place(const PictureOrder& order) {
   }
   placed_ = s;
   view_->aa = s.aa;
-  view_->light =
-      s.light.empty() ? scene::kNone : session::findNamed("light", s.light, view_->pose.lightNames);
+  session::chooseLight(*view_, s);
 }
 
 PictureStudio::Outcome PictureStudio::renderShot(ShownPicture& picture, const render::Settings& settings,
@@ -234,6 +235,7 @@ PictureStudio::Outcome PictureStudio::render(const PictureOrder& order,
     place(order);
   } catch (const Error& error) {
     facts_.picture.problem = error.what();
+    inspect(order);  // the texture of the frame before is none of this order's
     return Outcome::failed;
   }
   render::Settings settings = settingsOf(order, reduction_, view_->light);

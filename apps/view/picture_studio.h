@@ -2,8 +2,10 @@
 // them.
 #pragma once
 
+#include <filesystem>
 #include <functional>
 #include <memory>
+#include <vector>
 
 #include "apps/view/picture_order.h"
 #include "apps/view/shown_picture.h"
@@ -69,6 +71,7 @@ class PictureStudio {
   std::filesystem::path shaders_;
   std::function<void(const PictureFacts&)> publish_;
   std::shared_ptr<session::View> view_;
+  std::vector<std::filesystem::path> files_;  ///< that the scene is read from
   std::unique_ptr<ShownPicture> picture_, other_;
   std::optional<SceneQuestion> refused_;  ///< the last order's scene, where it could not be opened as it is
   std::optional<SceneQuestion> placed_;   ///< whose lights the scene has

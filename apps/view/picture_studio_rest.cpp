@@ -31,9 +31,9 @@ std::string truthKeyOf(const PictureOrder& order) {
 /// Of one channel, or of the first three; black and white where all values are equal.
 std::pair<float, float> displayRange(const render::InspectedValues& values, int channel) {
   double low = std::numeric_limits<double>::max(), high = std::numeric_limits<double>::lowest();
-  const int first = channel < 4 ? channel : 0, last = channel < 4 ? channel : 2;
+  const int first = channel < 4 ? channel : 0,
+            last = channel < 4 ? channel : std::min(values.components, 3) - 1;
   for (int c = first; c <= last; ++c) {
-    if (c >= values.components) continue;
     const render::InspectedValues::Range range = values.range(c);
     low = std::min(low, range.low);
     high = std::max(high, range.high);
@@ -252,7 +252,7 @@ Image PictureStudio::renderWhole(const PictureOrder& order) {
 Image PictureStudio::renderNext(const PictureOrder& order) {
   rendered_.reset();
   place(order);
-  Image image = picture_->next(view_->camera, view_->time, view_->animation, order.scene.aa);
+  Image image = picture_->next(view_->camera, view_->time, view_->animation, view_->light, order.scene.aa);
   facts_.compiled = facts_.toCompile = 0;  // as in smooth()
   facts_.picture.image = std::make_shared<const Image8>(toneMapped(image, order.tone));
   ++facts_.pictures;
@@ -264,7 +264,7 @@ Image PictureStudio::renderNext(const PictureOrder& order) {
 void PictureStudio::write(const SaveOrder& order, const std::filesystem::path& file, bool follows) {
   const PictureOrder picture = exposed(order.picture);
   if (picture.of != facts_.scene) throw Error("not saved: another scene was opened meanwhile");
-  checkApart({file}, {picture.scene.scene, picture.scene.environment});
+  checkApart({file}, files_);
   Image image = follows ? renderNext(picture) : renderWhole(picture);
   checkFinite(image, file, picture.scene.term, namesOf(picture.techniques));
   sign(image, order.command);

@@ -1,7 +1,9 @@
 #include "apps/view/reference_worker.h"
 
 #include <algorithm>
+#include <array>
 #include <chrono>
+#include <utility>
 
 #include "core/base/error.h"
 #include "core/base/failure.h"
@@ -10,8 +12,25 @@ namespace limn::app {
 namespace {
 
 constexpr int kFirstSpp = 4, kLastSpp = 1 << 14;
-constexpr int kFirstKeptSpp = 64;  // coarser ones are there again in no time
-constexpr double kFinest = 0.002;  // noise at which nothing more is to be seen
+constexpr int kFirstKeptSpp = 64;   // coarser ones are there again in no time
+constexpr double kFinest = 0.002;   // noise at which nothing more is to be seen
+constexpr int kFewestBlack = 4096;  // samples of a black picture that is taken for one without light
+
+bool isBlack(const Image& image) {
+  const std::array<int, 3> rgb = image.rgbChannels();
+  for (int y = 0; y < image.height(); ++y)
+    for (int x = 0; x < image.width(); ++x)
+      for (const int channel : rgb)
+        if (image.at(x, y, channel) != 0) return false;
+  return true;
+}
+
+/// Whether more samples show nothing more. Where light is rare, the first ones may all miss it: such a
+/// picture has no noise, either.
+bool isFinest(const reference::Result& result) {
+  if (result.noiseRms != 0) return result.noiseRms < kFinest;
+  return result.spp >= kFewestBlack || !isBlack(result.image);
+}
 
 }  // namespace
 
@@ -74,18 +93,19 @@ void ReferenceWorker::keep(const std::stop_token& stop, const reference::Request
   }
 }
 
-int ReferenceWorker::resume(const std::stop_token& stop, const reference::Request& wanted) {
-  if (cache_.empty()) return 0;
+std::optional<int> ReferenceWorker::resume(const std::stop_token& stop, const reference::Request& wanted) {
+  if (cache_.empty()) return kFirstSpp;
   const reference::Cache cache(cache_);
   for (int spp = kLastSpp; spp >= kFirstKeptSpp && !stop.stop_requested(); spp /= 4) {
     reference::Request request = wanted;
     request.spp = spp;
     if (auto found = cache.get(reference::contentHash(request))) {
+      const bool finest = isFinest(*found);
       deliver(stop, *std::move(found), true);
-      return spp;
+      return finest ? std::nullopt : std::optional(4 * spp);
     }
   }
-  return 0;
+  return kFirstSpp;
 }
 
 void ReferenceWorker::work(const std::stop_token& stop, const Task& task) {
@@ -113,14 +133,14 @@ void ReferenceWorker::work(const std::stop_token& stop, const Task& task) {
     }
     return true;
   };
-  const int found = resume(stop, request);
-  for (request.spp = found > 0 ? 4 * found : kFirstSpp; request.spp <= kLastSpp; request.spp *= 4) {
-    if (stop.stop_requested() || (found > 0 && state().noise < kFinest)) return;
+  const std::optional<int> first = resume(stop, request);
+  if (!first) return;
+  for (request.spp = *first; request.spp <= kLastSpp && !stop.stop_requested(); request.spp *= 4) {
     reference::Result result = reference::render(request);
-    const double noise = result.noiseRms;
+    const bool finest = isFinest(result);
     keep(stop, request, result);
     deliver(stop, std::move(result), false);
-    if (noise < kFinest) return;
+    if (finest) return;
   }
 }
 

@@ -68,8 +68,9 @@ class ReferenceWorker {
 
  private:
   void work(const std::stop_token& stop, const Task& task);
-  /// Returns the samples per pixel of the finest picture on disk; 0 if there is none.
-  int resume(const std::stop_token& stop, const reference::Request& request);
+  /// Delivers the finest picture on disk, if there is one. Returns how many samples per pixel the next
+  /// picture has; nullopt where nothing more would be seen.
+  std::optional<int> resume(const std::stop_token& stop, const reference::Request& request);
   void deliver(const std::stop_token& stop, reference::Result result, bool fromDisk);
   /// Keeps the picture on disk; the first time that it cannot, state() says why.
   void keep(const std::stop_token& stop, const reference::Request& request, const reference::Result& result);

@@ -76,8 +76,12 @@ std::optional<Image> ShownPicture::read(const scene::CameraPose& camera, int aa,
   }
 }
 
-Image ShownPicture::next(const scene::CameraPose& camera, double time, int animation, int aa) {
+Image ShownPicture::next(const scene::CameraPose& camera, double time, int animation, int light, int aa) {
   try {
+    if (light != settings_.light) {
+      settings_.light = light;
+      renderer_.configure(settings_);
+    }
     renderer_.setTime(time, animation);
     return render::supersample(renderer_, camera, settings_.size, aa);
   } catch (...) {

@@ -44,8 +44,9 @@ class ShownPicture {
   /// first of a sequence; nothing where `cancelled`, asked before each of its frames, said so.
   std::optional<Image> read(const scene::CameraPose& camera, int aa,
                             const std::function<bool()>& cancelled = {});
-  /// Renders and returns the picture of a sequence that follows the one of read() or next() before.
-  Image next(const scene::CameraPose& camera, double time, int animation, int aa);
+  /// Renders and returns the picture of a sequence that follows the one of read() or next() before. `light`
+  /// is the number that the chosen light has at that time (render::Settings::light).
+  Image next(const scene::CameraPose& camera, double time, int animation, int light, int aa);
   const std::string& problem() const { return problem_; }
   const std::string& shaderProblem() const { return shaderProblem_; }
   double frameMs() const { return frameMs_; }

@@ -2,7 +2,9 @@
 #include <gtest/gtest.h>
 
 #include <chrono>
+#include <cmath>
 #include <filesystem>
+#include <glm/glm.hpp>
 #include <memory>
 #include <string>
 #include <thread>
@@ -10,8 +12,10 @@
 
 #include "apps/view/picture_studio.h"
 #include "core/base/file.h"
+#include "core/image/image.h"
 #include "tests/support/gltf_builder.h"
 #include "tests/support/paths.h"
+#include "tests/support/skewed_lamp.h"
 #include "tests/view/picture_studio_harness.h"
 
 namespace limn::app {
@@ -33,6 +37,28 @@ TEST_F(PictureStudioTest, PicturesDoNotReplaceTheEnvironmentThatLightsThem) {
   EXPECT_TRUE(facts.problem);
   EXPECT_EQ(std::filesystem::file_size(map), bytes);
   save("picture.exr");
+  EXPECT_FALSE(facts.problem) << facts.message;
+}
+
+/// The scene's pictures lie beside it, where those that are made of it may be wanted.
+TEST_F(PictureStudioTest, PicturesDoNotReplaceTheTexturesOfTheScene) {
+  const std::filesystem::path wood = folder / "wood.png";
+  writePng(wood, Image::rgb(2, 2));
+  const auto bytes = std::filesystem::file_size(wood);
+  GltfBuilder b;
+  b.append("images", {{"uri", "wood.png"}});
+  b.append("textures", {{"source", 0}});
+  b.triangle(b.append("materials", {{"pbrMetallicRoughness", {{"baseColorTexture", {{"index", 0}}}}}}));
+  open(b.glb());
+  const auto save = [&](const std::filesystem::path& file) {
+    studio.save({.picture = order, .file = file, .command = {}, .frames = {}});
+  };
+  save(wood);
+  EXPECT_TRUE(facts.problem) << facts.message;
+  EXPECT_EQ(std::filesystem::file_size(wood), bytes);
+  save(folder / "lamp.glb");
+  EXPECT_TRUE(facts.problem) << facts.message;
+  save(folder / "picture.png");
   EXPECT_FALSE(facts.problem) << facts.message;
 }
 
@@ -240,6 +266,36 @@ TEST_F(PictureStudioTest, FramesThatCompileSayWhenTheyAreDone) {
   EXPECT_FALSE(facts.problem) << facts.message;
   EXPECT_TRUE(compiled);
   EXPECT_EQ(facts.toCompile, 0);
+}
+
+/// Lights have numbers. A lamp that an animation turns below a node of unequal scale is no light any more, so
+/// that the one behind it gets another number: it is still the chosen one that shines in all frames.
+TEST_F(PictureStudioTest, FramesKeepTheChosenLight) {
+  GltfBuilder b;
+  b.triangle();
+  test::addSkewedLamp(b, true);
+  order.scene.term = "direct";
+  order.scene.light = "chosen";
+  order.scene.eye = "0.3,0.3,0.8";
+  order.scene.target = "0.3,0.3,0";
+  open(b.glb());
+  ASSERT_EQ(facts.lights.size(), 2u);
+  EXPECT_EQ(facts.lights[1].name, "chosen");
+  studio.save(
+      {.picture = order, .file = folder / "a.exr", .command = {}, .frames = FrameRange{0, 1}, .fps = 2});
+  while (studio.saving()) studio.saveNext();
+  EXPECT_FALSE(facts.problem) << facts.message;
+  EXPECT_EQ(facts.lights.size(), 1u);
+  order.scene.time = 0.5;
+  studio.save({.picture = order, .file = folder / "b.exr", .command = {}, .frames = {}});
+  EXPECT_FALSE(facts.problem) << facts.message;
+  const auto middle = [&](const char* name) {
+    const Image image = readImage(folder / name);
+    return image.at(image.width() / 2, image.height() / 2, *image.findChannel("R"));
+  };
+  EXPECT_GT(middle("b.exr"), 0.f);
+  EXPECT_FLOAT_EQ(middle("a.0001.exr"), middle("b.exr"));
+  EXPECT_NEAR(middle("a.0000.exr"), middle("b.exr"), 0.01f * middle("b.exr")) << "it stands still";
 }
 
 }  // namespace

@@ -14,6 +14,7 @@
 #include "core/base/error.h"
 #include "core/technique/technique.h"
 #include "tests/support/gltf_builder.h"
+#include "tests/support/skewed_lamp.h"
 #include "tests/view/picture_studio_harness.h"
 
 namespace limn::app {
@@ -199,19 +200,7 @@ TEST_F(PictureStudioTest, TheTruthOfBeforeNeverStandsBesideANewPicture) {
 /// light that could be found. Its picture is refused then, whoever asks, and comes back with the light.
 TEST_F(PictureStudioTest, LightsThatWereNoneForAWhileComeBack) {
   GltfBuilder b;
-  const int glow = b.append("materials", {{"emissiveFactor", {1, 1, 1}}});
-  const int corners = b.vec3({{-1, -1, 0}, {1, -1, 0}, {1, 1, 0}, {-1, 1, 0}});
-  const int quad = b.mesh({{"POSITION", corners}}, b.indices({0, 1, 2, 0, 2, 3}), glow);
-  const int holder = b.node({{"scale", {2, 1, 1}}});
-  const int node = b.node({{"name", "lamp"}, {"mesh", quad}});
-  b.root["nodes"][static_cast<size_t>(holder)]["children"] = GltfBuilder::json::array({node});
-  const float angle = glm::radians(22.5f);  // half of how far it turns
-  const int times = b.floats({0, 1}),
-            turns = b.vec4({{0, 0, 0, 1}, {0, 0, std::sin(angle), std::cos(angle)}});
-  b.append("animations",
-           {{"samplers", GltfBuilder::json::array({{{"input", times}, {"output", turns}}})},
-            {"channels", GltfBuilder::json::array(
-                             {{{"sampler", 0}, {"target", {{"node", node}, {"path", "rotation"}}}}})}});
+  test::addSkewedLamp(b, false);
   order.scene.lightSettings = {"lamp.position=0,2,0"};
   open(b.glb());
   const auto problemAt = [&](double time, const char* eye) {
@@ -226,6 +215,43 @@ TEST_F(PictureStudioTest, LightsThatWereNoneForAWhileComeBack) {
   EXPECT_NE(problemAt(0.75, "0,0,4"), "") << "also at the same time again";
   EXPECT_EQ(problemAt(0, "0,0,5"), "");
   EXPECT_EQ(facts.lights.size(), 1u);
+}
+
+/// Where a picture is refused, nothing is said of a texture that nobody wants to see any more, nor of one of
+/// the picture before.
+TEST_F(PictureStudioTest, ARefusedPictureShowsNoTextureOfTheOneBefore) {
+  order.techniques.push_back({&kSlowFramesPlugin, ParameterValues(kSlowFrames.name, kSlowFrames.parameters)});
+  order.inspect = InspectionOrder{.texture = {"slow_frames", "clear", 0}, .view = {}};
+  order.moving = true;
+  open(lampFile());
+  step();
+  ASSERT_TRUE(facts.inspected && facts.inspected->image) << facts.picture.problem;
+  order.scene.light = "missing";
+  step();
+  EXPECT_NE(facts.picture.problem, "");
+  ASSERT_TRUE(facts.inspected);
+  EXPECT_EQ(facts.inspected->problem, "the frame has no such texture now");
+  order.scene.light.clear();
+  step();
+  ASSERT_TRUE(facts.inspected && facts.inspected->image) << facts.picture.problem;
+  order.inspect.reset();
+  order.scene.light = "missing";
+  order.moving = false;
+  step();
+  EXPECT_NE(facts.picture.problem, "");
+  EXPECT_FALSE(facts.inspected);
+}
+
+/// As where another parameter leaves a texture fewer channels than the one that was chosen: it is 0 there.
+TEST_F(PictureStudioTest, AChannelThatATextureLacksHasARange) {
+  order.techniques.push_back({&kSlowFramesPlugin, ParameterValues(kSlowFrames.name, kSlowFrames.parameters)});
+  order.inspect = InspectionOrder{.texture = {"slow_frames", "clear", 0}, .view = {.channel = 2}};
+  open(lampFile());
+  step();
+  ASSERT_TRUE(facts.inspected && facts.inspected->values) << facts.picture.problem;
+  ASSERT_LE(facts.inspected->values->components, 2);
+  EXPECT_EQ(facts.inspected->view.low, 0.f);
+  EXPECT_EQ(facts.inspected->view.high, 1.f);
 }
 
 }  // namespace
