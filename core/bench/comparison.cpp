@@ -35,10 +35,14 @@ const Metrics& errorOf(const Row& row) {
   return row.penumbra ? *row.penumbra : row.error;
 }
 
-const Row* baselineOf(std::span<const Row> rows) {
-  const auto found =
-      std::ranges::find_if(rows, [](const Row& row) { return row.what.baseline && isTimed(row); });
-  return found == rows.end() ? nullptr : &*found;
+const Row* baselineOf(const Table& table) {
+  const Row* first = nullptr;
+  for (const Row& row : table.rows) {
+    if (!row.what.baseline || !isTimed(row)) continue;
+    if (!isOutdated(row, table)) return &row;
+    if (first == nullptr) first = &row;
+  }
+  return first;
 }
 
 std::vector<double> samplesOf(const FrameTime& time) {
@@ -120,7 +124,7 @@ std::string settingsName(const Row& row) {
 
 std::string comparisonMarkdown(const Table& table) {
   const std::vector<Row>& rows = table.rows;
-  const Row* baseline = baselineOf(rows);
+  const Row* baseline = baselineOf(table);
   if (baseline == nullptr) return "";
   const std::string& technique = baseline->what.technique;
   const auto other = [&](const Row& row) { return isTimed(row) && row.what.technique != technique; };

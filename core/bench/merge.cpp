@@ -1,6 +1,10 @@
 #include "core/bench/merge.h"
 
+#include <algorithm>
+#include <map>
+#include <string>
 #include <utility>
+#include <vector>
 
 #include "core/base/file.h"
 #include "core/bench/results_file.h"
@@ -37,11 +41,25 @@ bool replaces(const Row& row, const Row& known, const std::function<Provenance(c
   return !known.failure.empty() || (sameOrigin && rank(row) > rank(known));
 }
 
-/// Appends what one folder has to the rows of `into`, which are `results`.
+/// The rows of a folder in the order of their first appearance, but those of a program behind those of one
+/// that measured nothing after it: tables take the last line for the newest row.
+std::vector<Row> rowsByAge(const fs::path& folder) {
+  std::vector<Row> rows = readRows(folder / "results.jsonl");
+  std::map<std::string, std::size_t> last;  // line of a program
+  for (const Row& row : rows) {
+    std::size_t& line = last[row.provenance.program];
+    line = std::max(line, row.line);
+  }
+  std::ranges::stable_sort(rows, {}, [&](const Row& row) { return last.at(row.provenance.program); });
+  return rows;
+}
+
+/// Appends what one folder has to the rows of `into`, which are `results`; lastOther: the last line of what
+/// another version measured.
 int mergeFolder(const fs::path& from, const fs::path& into, ResultsFile& results,
-                const std::function<Provenance(const Case&)>& provenance) {
+                const std::function<Provenance(const Case&)>& provenance, std::size_t& lastOther) {
   int appended = 0;
-  for (const Row& row : readRows(from / "results.jsonl")) {
+  for (const Row& row : rowsByAge(from)) {
     const Row* known = results.find(row.key);
     if (known != nullptr && !replaces(row, *known, provenance)) continue;
     std::error_code error;
@@ -51,9 +69,23 @@ int mergeFolder(const fs::path& from, const fs::path& into, ResultsFile& results
       if (!fs::exists(into / file, error)) bring(from, into, file, extension);
     for (const std::string& file : {row.picture, row.difference}) bring(from, into, file, ".png");
     results.append(row);
+    if (provenance && !row.provenance.program.empty() &&
+        !staleness(row.provenance, provenance(row.what)).empty())
+      lastOther = results.find(row.key)->line;
     ++appended;
   }
   return appended;
+}
+
+/// Writes rows before that line once more that are valid now: tables would take what was brought from another
+/// folder for newer.
+void putValidLast(ResultsFile& results, const std::function<Provenance(const Case&)>& provenance,
+                  std::size_t lastOther) {
+  std::vector<std::string> valid;
+  for (const Row& row : results.rows())
+    if (row.line < lastOther && staleness(row.provenance, provenance(row.what)).empty())
+      valid.push_back(row.key);
+  for (const std::string& key : valid) results.append(*results.find(key));
 }
 
 }  // namespace
@@ -62,7 +94,9 @@ int mergeResults(std::span<const fs::path> from, const fs::path& into,
                  const std::function<Provenance(const Case&)>& provenance) {
   ResultsFile results(into / "results.jsonl");  // read once: a sweep has hundreds of parts
   int appended = 0;
-  for (const fs::path& folder : from) appended += mergeFolder(folder, into, results, provenance);
+  std::size_t lastOther = 0;
+  for (const fs::path& folder : from) appended += mergeFolder(folder, into, results, provenance, lastOther);
+  if (lastOther > 0) putValidLast(results, provenance, lastOther);
   return appended;
 }
 

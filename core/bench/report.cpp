@@ -181,7 +181,7 @@ Json tableJson(const Table& table, const Site& ofRenderer, EmbeddedPictures& pic
   json["windows"] = Json::array();
   for (const Window& w : windows) json["windows"].push_back({w.x, w.y, w.width, w.height});
   json["reference"] = referenceJson(table, reference, windows, pictures);
-  const Row* baseline = baselineOf(table.rows);
+  const Row* baseline = baselineOf(table);
   if (baseline != nullptr) json["baseline"] = markedName(*baseline, table);
   json["rows"] = Json::array();
   for (const Row& row : table.rows) {

@@ -24,8 +24,9 @@ struct Metrics {
   /// Share, among the pixels covered in either picture, of those that differ in coverage, id or depth.
   double masked_share = 0;
   /// Three times the reference's own noise over the compared pixels, in image units: a smaller rmse is no
-  /// difference. Known where the reference has a channel "variance" (of the mean of R, G, B), or metadata
-  /// "noise_rms" (RMS relative to the mean), which is then taken for that of every part of the picture.
+  /// difference. Known where the reference has a channel "variance" (that of its R, G and B, averaged over
+  /// the three), or metadata "noise_rms" (RMS relative to the mean), which is then taken for that of every
+  /// part of the picture.
   std::optional<double> noise_floor;
 };
 

@@ -136,10 +136,10 @@ struct Request {
 };
 
 /// Holds the result of a request. Channels: R, G, B (radiance in W/(sr m^2); V or W three times for these),
-/// variance (of the mean of R, G, B, estimated), Z, coverage, id (-1: nothing seen), albedo.R/G/B, N.X/Y/Z;
-/// for visibility also V, Vw (V weighted by irradiance) and masked (1 where no part of the light lies above
-/// the geometric tangent plane: V = 1); for relief W, Ww and masked; and A (1 where a surface or a background
-/// is seen). Metadata: noise_rms, spp, seed, term, light, bounces, interfaces.
+/// variance (of the mean, estimated, averaged over R, G and B), Z, coverage, id (-1: nothing seen),
+/// albedo.R/G/B, N.X/Y/Z; for visibility also V, Vw (V weighted by irradiance) and masked (1 where no part of
+/// the light lies above the geometric tangent plane: V = 1); for relief W, Ww and masked; and A (1 where a
+/// surface or a background is seen). Metadata: noise_rms, spp, seed, term, light, bounces, interfaces.
 struct Result {
   Image image;
   double noiseRms =

@@ -3,7 +3,6 @@
 #pragma once
 
 #include <optional>
-#include <span>
 #include <string>
 #include <vector>
 
@@ -44,8 +43,9 @@ LIMN_API double shadowMs(const Row& row);
 /// Returns the errors in the penumbra where they are known, else those of the whole picture.
 LIMN_API const Metrics& errorOf(const Row& row);
 
-/// Returns the timed row that the others of its table are compared with; null if there is none.
-LIMN_API const Row* baselineOf(std::span<const Row> rows);
+/// Returns the timed row that the others of the table are compared with: the first baseline, an outdated one
+/// only where the newest version measured none. Null if there is none.
+LIMN_API const Row* baselineOf(const Table& table);
 
 /// Returns the single times of the frames; where they are not known, the median alone.
 LIMN_API std::vector<double> samplesOf(const FrameTime& time);

@@ -129,6 +129,23 @@ TEST(BenchComparison, ComparisonsMarkRowsOfAnotherProgram) {
   EXPECT_EQ(alike.find("\u2020"), std::string::npos) << alike;
 }
 
+/// As where the suite has named another baseline since the program changed.
+TEST(BenchComparison, AnOutdatedBaselineStandsBack) {
+  std::vector<Row> rows = {exampleRow(exampleCase("pcss", 1024), 0.1, 8),
+                           exampleRow(exampleCase("pcss", 16), 0.2, 2),
+                           exampleRow(exampleCase("vssm"), 0.16, 1)};
+  rows[0].what.baseline = rows[1].what.baseline = true;
+  for (std::size_t i = 0; i < rows.size(); ++i) {
+    rows[i].provenance.program = i == 0 ? "1" : "2";
+    rows[i].line = i + 1;
+  }
+  const auto compared = [&] { return comparisonMarkdown(makeTables(rows).at(0)); };
+  EXPECT_NE(compared().find("\nTimes of pcss samples=16 as multiples"), std::string::npos) << compared();
+  EXPECT_NE(compared().find("| vssm samples=16 | 2.00 (n = 1) |"), std::string::npos) << compared();
+  rows[0].provenance.program = "2";
+  EXPECT_NE(compared().find("\nTimes of pcss samples=1024 as multiples"), std::string::npos) << compared();
+}
+
 /// The map's own light as far as its lights are seen, beside the sum of them.
 TEST(BenchComparison, SettingsNameTheLightsOfTheEnvironment) {
   Case c = exampleCase("pcss", 16);

@@ -2,11 +2,14 @@
 
 #include <array>
 #include <filesystem>
+#include <set>
+#include <string>
 
 #include "core/base/file.h"
 #include "core/bench/merge.h"
 #include "core/bench/results_file.h"
 #include "core/bench/row.h"
+#include "core/bench/tables.h"
 #include "tests/unit/bench/bench_folder.h"
 #include "tests/unit/bench/bench_rows.h"
 
@@ -116,6 +119,37 @@ TEST_F(BenchMerge, MergingTakesWhatIsValidNowAndOfMoreTurns) {
   const fs::path failed = make("old, failed", then, 1, "lost");
   EXPECT_EQ(merge(failed, older), 0);
   EXPECT_EQ(merge(older, failed), 1);
+}
+
+/// Tables take the last line for the newest row: what a suite has no more, or an older folder has, comes
+/// before what was measured with the present program.
+TEST_F(BenchMerge, RowsOfOtherProgramsAreNotTheNewest) {
+  const fs::path part = folder_ / "part", other = folder_ / "other", all = folder_ / "all";
+  for (const fs::path& folder : {part, other, all}) fs::create_directories(folder);
+  const auto measured = [](const fs::path& folder, const std::string& technique, const std::string& program) {
+    Row row = exampleRow(exampleCase(technique));
+    row.provenance = {program, "scene", {}};
+    ResultsFile(folder / "results.jsonl").append(row);
+  };
+  measured(part, "pcss", "program 1");
+  measured(part, "vssm", "program 1");
+  measured(part, "pcss", "program 2");
+  measured(other, "pcf", "program 1");
+  const auto outdated = [&] {
+    const Table table = makeTables(readRows(all / "results.jsonl")).at(0);
+    std::set<std::string> techniques;
+    for (const Row& row : table.rows)
+      if (isOutdated(row, table)) techniques.insert(row.what.technique);
+    return techniques;
+  };
+  EXPECT_EQ(mergeResults(std::array{part}, all, {}), 2);
+  EXPECT_EQ(outdated(), (std::set<std::string>{"vssm"})) << "the part says which is newer";
+  const auto now = [](const Case&) { return Provenance{"program 2", "scene", {}}; };
+  EXPECT_EQ(mergeResults(std::array{other}, all, now), 1);
+  EXPECT_EQ(outdated(), (std::set<std::string>{"pcf", "vssm"}));
+  const std::string text = readTextFile(all / "results.jsonl");
+  EXPECT_EQ(mergeResults(std::array{part, other}, all, now), 0);
+  EXPECT_EQ(readTextFile(all / "results.jsonl"), text) << "merging again changes nothing";
 }
 
 }  // namespace

@@ -105,6 +105,25 @@ TEST(MedianWithInterval, HoldsTheTruthAsOftenAsItSays) {
   EXPECT_EQ(medianWithInterval({one}).low, 4);
 }
 
+/// Coverage alone would praise intervals that are too wide. Of so few turns 2.5 % of the resamples and more
+/// end at the least and the greatest of them, so that the ends are known; the quantiles of Student's
+/// distribution are those of its tables.
+TEST(RatioOfMedians, IntervalsOfFewTurnsAreAsWideAsTheyHaveToBe) {
+  const auto expectEnds = [](const Ratio& ratio, double least, double greatest, double student) {
+    const double wider = std::sqrt(ratio.turns / (ratio.turns - 1.0)) * student / 1.959964;
+    EXPECT_NEAR(ratio.low, ratio.value * std::pow(least / ratio.value, wider), 1e-5) << ratio.turns;
+    EXPECT_NEAR(ratio.high, ratio.value * std::pow(greatest / ratio.value, wider), 1e-5) << ratio.turns;
+  };
+  const double two[] = {8, 12}, twoOthers[] = {5, 4};
+  const double three[] = {12, 8, 10}, threeOthers[] = {4, 6, 5}, four[] = {9, 12, 8, 11};
+  expectEnds(ratioOfMedians({two, 2}, {twoOthers, 2}), 8.0 / 5, 12.0 / 4, 4.3026527);  // 2 degrees of freedom
+  expectEnds(ratioOfMedians({three, 3}, {threeOthers, 3}), 8.0 / 6, 12.0 / 4, 2.7764451);  // 4
+  expectEnds(medianWithInterval({two, 2}), 8, 12, 12.7062047);                             // 1
+  expectEnds(medianWithInterval({three, 3}), 8, 12, 4.3026527);                            // 2
+  expectEnds(medianWithInterval({four, 4}), 8, 12, 3.1824463);                             // 3
+  EXPECT_DOUBLE_EQ(medianWithInterval({four, 4}).value, 10);
+}
+
 TEST(RatioOfMedians, TheFewerTurnsOfTwoSidesCount) {
   const double three[] = {4, 5, 6}, one[] = {2};
   EXPECT_EQ(ratioOfMedians({three, 3}, {one}).turns, 1);

@@ -32,6 +32,28 @@ TEST(Savings, PicturesAreComparedPixelByPixel) {
   EXPECT_FALSE(apart.holds());
 }
 
+/// A bound finds an umbra in which an estimator may leave some light: what an early-out changes by more than
+/// a code of the display must come nearer to the reference, and the error as a whole must not grow.
+TEST(Savings, EarlyOutsMustNotGoAwayFromTheReference) {
+  const Image reference = grey(0);
+  const auto holds = [&](float forced, float without, bool known, double growth = 1) {
+    SavingResult result{.name = "bounds", .how = "", .exact = false, .applies = true};
+    comparePictures(result, grey(forced), grey(without), known ? &reference : nullptr);
+    if (known) {
+      result.forced.rmse = forced;
+      result.without.rmse = growth * without;
+    }
+    return result.holds();
+  };
+  constexpr float kLittle = 1 / 512.0f;
+  EXPECT_TRUE(holds(0.5f, 0.25f, true));
+  EXPECT_FALSE(holds(0.25f, 0.5f, true)) << "farther away";
+  EXPECT_FALSE(holds(0.5f, 0.25f, false)) << "nothing says which is nearer";
+  EXPECT_TRUE(holds(0.5f, 0.5f - kLittle, false));
+  EXPECT_TRUE(holds(0.5f, 0.5f - kLittle, true));
+  EXPECT_FALSE(holds(0.5f, 0.5f - kLittle, true, 1.01)) << "the error has grown";
+}
+
 TEST(Savings, PicturesWithNanAreNotEqual) {
   constexpr float kInfinity = std::numeric_limits<float>::infinity();
   for (const float broken : {std::numeric_limits<float>::quiet_NaN(), kInfinity})
