@@ -75,7 +75,7 @@ void scale(scene::Scene& scene, float factor) {
   }
   for (scene::CameraLens& camera : scene.cameras) camera.near *= factor;
   for (scene::Material& material : scene.materials) {
-    material.thickness *= factor;
+    // Its thickness is in the space of its mesh, which the root scales.
     material.attenuationDistance *= factor;
     if (material.subsurface) material.subsurface->extinction /= factor;
   }

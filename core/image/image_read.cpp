@@ -234,9 +234,10 @@ Image8 decode8(std::span<const std::byte> bytes, const std::string& name) {
 
 ImageChannel decodeFirstChannel(std::span<const std::byte> bytes, const std::string& name,
                                 std::uint64_t mostPixels) {
+  const Error refusal(fmt::format("{}: a PNG or an EXR is accepted", name));
+  if (isWebp(bytes)) throw refusal;  // it has a decoder of its own
   Picture picture(bytes, name);
-  if (picture.format() != ImageFormat::png && picture.format() != ImageFormat::exr)
-    throw Error(fmt::format("{}: a PNG or an EXR is accepted", name));
+  if (picture.format() != ImageFormat::png && picture.format() != ImageFormat::exr) throw refusal;
   const int width = picture.width(), height = picture.height();
   const std::uint64_t pixels = static_cast<std::uint64_t>(width) * static_cast<std::uint64_t>(height);
   if (pixels > mostPixels)

@@ -88,7 +88,7 @@ struct Material {
   float specularFactor = 1;
   glm::vec3 specularColour{1};
   float transmission = 0;
-  float thickness = 0;
+  float thickness = 0;            ///< of a body, in the space of its mesh; 0: a thin wall
   float attenuationDistance = 0;  ///< 0: infinite
   glm::vec3 attenuationColour{1};
   TextureRef baseColourTexture, metalRoughTexture, normalTexture, emissiveTexture;

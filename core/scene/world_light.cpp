@@ -5,23 +5,28 @@
 #include <cmath>
 #include <iterator>
 
+#include "core/scene/normal_matrix.h"
 #include "glsl/light/rectangle_light.glsl"
 #include "glsl/numeric/equirectangular.glsl"
 
 namespace limn::scene {
 namespace {
 
-/// Right-handed axes of a node without its scale; z is kept, x made perpendicular to it.
+/// Right-handed axes of a node without its scale; z is kept, x made perpendicular to it. Where the node
+/// mirrors, y stays up and x turns round: else cameras below it would stand on their heads. An axis without
+/// length is perpendicular to the other two.
 glm::mat3 axes(const glm::mat4& m) {
   const auto unit = [](const glm::dvec3& v, const glm::dvec3& fallback) {
     const double length = glm::length(v);
     return length > 0 && std::isfinite(length) ? v / length : fallback;
   };
-  const glm::dvec3 z = unit(glm::dvec3(m[2]), glm::dvec3(0, 0, 1));
+  const glm::dvec3 right(m[0]), up(m[1]);
+  const glm::dvec3 z = unit(glm::dvec3(m[2]), unit(glm::cross(right, up), glm::dvec3(0, 0, 1)));
   const glm::dvec3 other = std::abs(z.x) < 0.5 ? glm::dvec3(1, 0, 0) : glm::dvec3(0, 1, 0);
   const glm::dvec3 any = unit(other - glm::dot(other, z) * z, other);
-  glm::dvec3 x = unit(glm::dvec3(m[0]), any);
+  glm::dvec3 x = unit(right, unit(glm::cross(up, z), any));
   x = unit(x - glm::dot(x, z) * z, any);
+  if (mirrors(m)) x = -x;
   return glm::mat3(glm::vec3(x), glm::vec3(glm::cross(z, x)), glm::vec3(z));
 }
 

@@ -100,13 +100,12 @@ void Loader::readMedium(const tinygltf::Value& medium) {
   const tinygltf::Value& grid = medium.Get("grid");
   if (!grid.IsString()) fail(what + " grid: the name of an OpenVDB file is accepted");
   const std::filesystem::path file = resolve(grid.Get<std::string>(), what + " grid");
-  if (!scene_.medium.present()) return;
   try {
     setGrid(scene_.medium, readDensityGrid(file, {}, scene_.origin));
   } catch (const Error& error) {
     fail(fmt::format("{} grid: {}", what, error.what()));
   }
-  if (!scene_.medium.present()) warn(what + " grid: it is 0 everywhere; there is no medium");
+  if (!scene_.medium.grid) warn(what + " grid: it is 0 everywhere; there is no medium");
 }
 
 void Loader::readSmoke(const tinygltf::Value& smoke, const std::string& what) {

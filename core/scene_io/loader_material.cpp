@@ -277,13 +277,16 @@ Material Loader::readMaterial(const tinygltf::Material& source, const std::strin
                 uses, what + " " + slot);
   };
   const tinygltf::Value* glossy = extension(source.extensions, "KHR_materials_pbrSpecularGlossiness");
-  if (glossy == nullptr) {
-    texture(pbr.baseColorTexture, true, m.baseColourTexture, "baseColorTexture");
-    texture(pbr.metallicRoughnessTexture, false, m.metalRoughTexture, "metallicRoughnessTexture");
+  // An unlit material shows its base colour alone, whose coordinates are then those that count.
+  const bool unlit = source.extensions.contains("KHR_materials_unlit");
+  if (glossy == nullptr) texture(pbr.baseColorTexture, true, m.baseColourTexture, "baseColorTexture");
+  if (!unlit) {
+    if (glossy == nullptr)
+      texture(pbr.metallicRoughnessTexture, false, m.metalRoughTexture, "metallicRoughnessTexture");
+    texture(source.normalTexture, false, m.normalTexture, "normalTexture");
+    texture(source.emissiveTexture, true, m.emissiveTexture, "emissiveTexture");
   }
-  texture(source.normalTexture, false, m.normalTexture, "normalTexture");
   m.normalScale = number(source.normalTexture.scale, what + " normalTexture scale");
-  texture(source.emissiveTexture, true, m.emissiveTexture, "emissiveTexture");
   readMaterialExtensions(source, m, what);
   if (glossy != nullptr) applySpecularGlossiness(*glossy, m, uses, what);
   if (source.extras.IsObject() && source.extras.Has("limn_material")) {
@@ -300,7 +303,7 @@ Material Loader::readMaterial(const tinygltf::Material& source, const std::strin
   }
   UvUse& uvs = uvUses_.emplace_back(settleUvs(std::move(uses), m));
   uvs.used = uvs.used || m.tangents();  // along rising u, where the file has no tangents
-  if (source.extensions.contains("KHR_materials_unlit")) applyUnlit(m, what);
+  if (unlit) applyUnlit(m, what);
   return m;
 }
 

@@ -60,7 +60,7 @@ struct Material {
   vec3 specular_colour;   // KHR specular colour * factor (F0 tint)
   float specular_factor;  // F90
   float transmission;
-  float thickness;             // m
+  float thickness;             // in the space of the mesh; 0: a thin wall
   float attenuation_distance;  // m, 0: infinite
   uint unused_0;
   vec3 attenuation;  // colour

@@ -1,5 +1,5 @@
 // Declares how the lights and cameras of nodes are placed in world space. Internal to core/scene. A node's
-// scale changes neither.
+// scale changes neither, but a node that mirrors turns them round with the scene, upright.
 #pragma once
 
 #include <optional>

@@ -9,6 +9,7 @@
 #include "core/bench/private/stress_scene.h"
 #include "core/bench/stress.h"
 #include "core/scene/subsurface.h"
+#include "glsl/caustics/specular_view.glsl"
 #include "glsl/materials/model.glsl"
 
 namespace limn::bench {
@@ -107,11 +108,13 @@ TEST(StressedScene, WhatScattersFollowsItsSurface) {
 
 TEST(StressedScene, BodiesAbsorbAsMuchAtEveryScale) {
   scene::Scene scene;
+  scene.nodes.resize(1);
   scene.materials.resize(2);
   scene.materials[0].thickness = 0.5f;
   scene.materials[0].attenuationDistance = 0.25f;
   const scene::Scene scaled = stressed(scene, StressChange::sceneScale, 1024);
-  EXPECT_EQ(scaled.materials[0].thickness, 512);
+  const float root = glsl::body_scale(glm::mat3(scene::evaluate(scaled, 0).nodeToWorld.at(1)));
+  EXPECT_NEAR(root * scaled.materials[0].thickness, 512, 0.01) << "metres in the world";
   EXPECT_EQ(scaled.materials[0].attenuationDistance, 256);
   EXPECT_EQ(scaled.materials[1].thickness, 0) << "a sheet stays one";
   EXPECT_EQ(scaled.materials[1].attenuationDistance, 0) << "without absorption";

@@ -113,6 +113,15 @@ TEST(Webp, RefusesWhatIsTruncatedOrDamaged) {
               HasSubstr("not a picture"));
 }
 
+TEST(Webp, IsNoPictureOfHeights) {
+  try {
+    readFirstChannelMemory(losslessWebp(kPictureWidth, kPictureHeight, noise()), "texture 3", 1 << 20);
+    FAIL() << "accepted";
+  } catch (const Error& error) {
+    EXPECT_STREQ(error.what(), "texture 3: a PNG or an EXR is accepted");
+  }
+}
+
 TEST(Webp, RefusesAnimations) {
   EXPECT_EQ(webpRefusal(canvas(2, 4, 4)), "texture 3: animated WebP pictures are not accepted");
 }

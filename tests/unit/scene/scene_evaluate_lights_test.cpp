@@ -163,5 +163,38 @@ TEST(SceneEvaluate, Cameras) {
   expectNear(pose.cameras[0].worldToView * glm::vec4(1, 2, 0, 1), {1, 2, -5});
 }
 
+/// Programs with left-handed axes write a root that mirrors. No camera below it stands on its head, and no
+/// texture that a spot shines through.
+TEST(SceneEvaluate, NodesThatMirrorKeepTheirUp) {
+  for (const std::vector<float>& scale : {std::vector<float>{1, 1, -1}, {-1, 1, 1}, {-2, -2, -2}}) {
+    GltfBuilder b;
+    b.append("cameras", {{"type", "perspective"}, {"perspective", {{"yfov", 0.7}, {"znear", 0.25}}}});
+    b.light({{"type", "spot"}, {"spot", json::object()}}, {{"camera", 0}});
+    b.node({{"children", {0}}, {"scale", scale}});
+    const Pose pose = evaluate(loadBuilt(b), 0);
+    const glm::vec3 up(0, std::copysign(1.f, scale[1]), 0), ahead(0, 0, -std::copysign(1.f, scale[2]));
+    const glm::mat3 toView(pose.cameras.at(0).worldToView);
+    expectNear(toView * up, {0, 1, 0});
+    expectNear(toView * ahead, {0, 0, -1});
+    const glsl::Light& light = pose.lights.at(0);
+    expectNear(light.axis_v, up);
+    expectNear(light.direction, ahead);
+    expectNear(glm::cross(light.axis_u, light.axis_v), -light.direction);
+  }
+}
+
+/// The other two axes of a node say where the one without length points.
+TEST(SceneEvaluate, LightsOfFlatNodesKeepTheirDirection) {
+  const double s = std::sqrt(0.5);
+  for (const std::vector<float>& scale : {std::vector<float>{1, 1, 0}, {0, 1, 1}, {1, 0, 1}}) {
+    GltfBuilder b;
+    b.light({{"type", "directional"}},
+            {{"rotation", {0, s, 0, s}}, {"scale", scale}});  // 90 degrees about Y: -Z becomes -X
+    const glsl::Light light = evaluate(loadBuilt(b), 0).lights.at(0);
+    expectNear(light.direction, {-1, 0, 0});
+    expectNear(light.axis_v, {0, 1, 0});
+  }
+}
+
 }  // namespace
 }  // namespace limn::test

@@ -59,6 +59,18 @@ TEST_F(VdbFile, IsTheMediumOfASceneBesideIt) {
   EXPECT_THAT(loadError(b.glb()), HasSubstr("a scene in memory can name none"));
 }
 
+/// As smoke does: the coefficients of a file, which --sigma-a and --sigma-s override, may be 0.
+TEST_F(VdbFile, WaitsForCoefficients) {
+  write(ramp({0, 0, 0}, {2, 2, 2}));
+  GltfBuilder b;
+  b.append("scenes", {{"extras", {{"limn_medium", {{"grid", "cloud.vdb"}}}}}});
+  scene::Scene scene = scene::load(SceneFiles::write("scene/a.glb", b.glb()));
+  EXPECT_FALSE(scene.medium.inhomogeneous());
+  EXPECT_THAT(scene.warnings, testing::IsEmpty());
+  scene.medium.sigmaS = glm::vec3(1);
+  EXPECT_TRUE(scene.medium.inhomogeneous());
+}
+
 TEST_F(VdbFile, OfZerosIsNoMedium) {
   const auto grid = ramp({0, 0, 0}, {2, 2, 2});
   for (auto voxel = grid->beginValueOn(); voxel; ++voxel) voxel.setValue(0);

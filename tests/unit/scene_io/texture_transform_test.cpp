@@ -158,6 +158,20 @@ TEST(TextureTransforms, WarnsOfWhatNoImageCanShow) {
   EXPECT_THAT(loadBuilt(clamped).warnings, ElementsAre(HasSubstr("texture coordinates differ")));
 }
 
+/// Its normal map, which nothing looks up, could move the base colour by parts of a texel, and blur it.
+TEST(TextureTransforms, OfAnUnlitMaterialAreThoseOfItsBaseColour) {
+  for (const json& base : {json::object(), json{{"offset", {0.3, 0}}}}) {
+    GltfBuilder b =
+        withTextures({{kBaseColour, base}, {kMetalRough}, {kNormal}, {kEmissive, {{"texCoord", 1}}}});
+    b.root["textures"][2]["sampler"] = b.append("samplers", {{"wrapS", 33071}});
+    b.root["materials"][0]["extensions"]["KHR_materials_unlit"] = json::object();
+    const Scene scene = loadBuilt(b);
+    EXPECT_THAT(scene.warnings, IsEmpty());
+    EXPECT_EQ(scene.images.size(), 1u);
+    EXPECT_EQ(imageOf(scene, scene.materials.at(0).emissiveTexture).width, 8);
+  }
+}
+
 TEST(TextureTransforms, ImagesStayWithinLimits) {
   const GltfBuilder wide = withTextures({{kBaseColour}, {kEmissive, {{"scale", {4096, 1}}}}});
   EXPECT_THAT(loadBuilt(wide).warnings, ElementsAre(HasSubstr("texture coordinates differ")));
