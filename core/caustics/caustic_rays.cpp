@@ -103,10 +103,7 @@ struct CausticRayService::Implementation {
 /// Views of the specular objects for the current lights and bounds.
 void CausticRayService::Implementation::fit(Request& request) const {
   const scene::Bounds objects = scene.specularBounds();
-  // The search for the end of a way through an object has points all along it: other objects are not to draw
-  // them apart.
-  float diameter = 0;
-  for (const scene::Bounds& box : boxes) diameter = std::max(diameter, 2 * box.radius());
+  const float diameter = request.buffers.widest();
   request.views.clear();
   request.layers.clear();
   float mapIndex = 0;

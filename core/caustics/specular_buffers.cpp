@@ -26,6 +26,13 @@ void SpecularBuffers::add(frame::FrameGraph& graph, const SceneHandles& handles,
   back_ = addPass(graph, handles, views, size, normals == GeometricNormals::both, owner, &front_);
 }
 
+float SpecularBuffers::widest() const {
+  float diameter = 0;
+  for (uint32_t i = 0; i < scene_.instanceCount(); ++i)
+    if (scene_.specular(i)) diameter = std::max(diameter, 2 * scene_.bounds(i).radius());
+  return diameter;
+}
+
 /// Nearest surfaces, or farthest ones of the instances in `front`.
 SpecularBuffer SpecularBuffers::addPass(frame::FrameGraph& graph, const SceneHandles& handles,
                                         frame::BufferHandle views, int size, bool normals, const char* owner,

@@ -46,6 +46,11 @@ class LIMN_API SpecularBuffers {
   void add(frame::FrameGraph& graph, const SceneHandles& handles, frame::BufferHandle views, int size,
            GeometricNormals normals, const char* owner);
 
+  /// Returns how wide the widest specular object is now, in metres: no way through one is longer. Searches
+  /// for where light leaves an object have their points over so far, and not to the other objects: these
+  /// would draw the points apart, and a body would lose its folds because of something far away.
+  float widest() const;
+
   const SpecularBuffer& front() const { return front_; }
   const SpecularBuffer& back() const { return back_; }
 

@@ -26,7 +26,7 @@ struct AirlightPath {
   float centre_axial;  // from the light's centre: this instead of .x
   vec2 centre;         // square of the distance from the centre: .x + q (.y + q)
   vec2 ramp;           // the root of the cone's factor before it is clamped: .x cosine + .y
-  float window;        // 1 / range^4 of the light; 0: unlimited
+  float window;        // 1 / range^2 of the light; 0: unlimited
   float two_sided;     // 1, or 0
   vec3 from_eye;       // from the middle of the medium's ball to the eye
   vec3 across;         // from the source to the base; parallel light: its direction instead
@@ -61,7 +61,7 @@ LIMN_FN AirlightPath airlight_path(Medium m, Light light, uint kind, AirlightRay
   float slope = 1.0f / spot_ramp(light);
   p.ramp = (light.flags & light_flag_cone) != 0u ? vec2(slope, -slope * light.cos_outer) : vec2(0.0f, 1.0f);
   float inverse = light.range > 0.0f ? 1.0f / light.range : 0.0f;
-  p.window = inverse * inverse * inverse * inverse;
+  p.window = inverse * inverse;
   p.from_eye = ray.eye - m.ball.centre;
   p.across = parallel ? light.direction : across;
   p.radius2 = m.ball.radius * m.ball.radius;
@@ -92,7 +92,8 @@ LIMN_FN float airlight_path_factor(AirlightPath p, uint kind, float q) {
     axial = p.centre_axial + q * p.axial.y;
   }
   float cone = clamp(p.ramp.x * axial * inverse + p.ramp.y, 0.0f, 1.0f);
-  return factor * cone * cone * clamp(1.0f - p.window * square * square, 0.0f, 1.0f);
+  float share = p.window * square;  // squared: its parts may have fourth powers that floats do not hold
+  return factor * cone * cone * clamp(1.0f - share * share, 0.0f, 1.0f);
 }
 
 // Metres of the medium's ball between light, the place at q, which lies in it, and eye. The place is taken from the middle of

@@ -92,14 +92,14 @@ class ImageSpaceRefraction : public Technique {
   glm::ivec2 picture_{1};
   int size_ = 1;
   glsl::ShadowView view_{};
-  float diameter_ = 0;  ///< of all specular objects together, metres
+  float diameter_ = 0;  ///< of the widest specular object, metres
   gpu::Buffer viewBuffer_;
   frame::BufferHandle views_;
 
   /// True: the view is another one.
   bool fit() {
     const scene::Bounds objects = scene_->specularBounds();
-    diameter_ = 2 * objects.radius();
+    diameter_ = buffers_->widest();
     const glsl::ShadowView before = view_;
     view_ = viewOf(scene_->camera(), objects, picture_, size_);
     return std::memcmp(&before, &view_, sizeof(view_)) != 0;
@@ -111,8 +111,8 @@ class ImageSpaceRefraction : public Technique {
     scene_ = &inputs.gpuScene;
     picture_ = inputs.size;
     size_ = std::min(inputs.parameters.integer("buffer_size"), scene_->device().limits().maxTextureSize);
-    fit();
     buffers_ = std::make_unique<caustics::SpecularBuffers>(inputs.gpuScene);
+    fit();
     buffers_->setViews({&view_, 1});
     viewBuffer_ = gpu::Buffer::of<glsl::ShadowView>(scene_->device(), "camera's view of specular objects",
                                                     {&view_, 1}, gpu::BufferUse::updated);

@@ -19,7 +19,7 @@ layout(std430) readonly buffer Views { ShadowView views[]; };
 #if ENVIRONMENT
 uniform sampler2D environment_map;
 #endif
-uniform float diameter;  // of the specular objects together, metres
+uniform float diameter;  // of the widest specular object, metres
 uniform int steps;
 
 const float least_cosine = 1e-4;

@@ -2,6 +2,8 @@
 // what is left out where there are none.
 #include <fmt/format.h>
 
+#include <array>
+
 #include "core/bench/private/stress_scene.h"
 #include "core/render/supersample.h"
 #include "core/scene/camera.h"
@@ -73,6 +75,20 @@ class SpecularTest : public MediaHarness {
   static double wallAt(const dvec3& p) {
     const dvec3 towards = lamp - p;
     return 10 / double(glsl::pi) * towards.z / std::pow(glm::length(towards), 3);
+  }
+
+  /// How much of the picture of what is seen in glass, under a sky, changes where the matte `pane` becomes
+  /// glass, too: a part of its root mean square.
+  double changeWithGlass(scene::Scene& scene, int pane, const scene::CameraPose& camera) {
+    scene.environment = test::environmentOf(64, [](const vec3& d) { return 1.f + 0.5f * d; });
+    const auto seen = [&] {
+      render::Renderer renderer(device(), scene);
+      return picture(renderer, settings(width, height, Term::specular, {refraction()}), camera);
+    };
+    const Image alone = seen();
+    EXPECT_GT(mean(alone), 0);
+    scene.materials[static_cast<size_t>(pane)] = test::glass(1.5f);
+    return relativeRms(seen(), alone);
   }
 
   static dvec3 rayOf(const scene::CameraPose& camera, const scene::Bounds& bounds, int x, int y) {
@@ -205,23 +221,32 @@ TEST_F(SpecularTest, RaysThatTheScreenDoesNotKnowSeeTheEnvironment) {
   }
 }
 
-/// A ball of 5 cm and, 500 m behind the camera, a pane that is glass or not: the search for where light
-/// leaves the ball spans both, and is not to be coarser than the ball's texels.
+/// A ball of 5 cm and, 500 m behind the camera, a pane as wide that is glass or not: the search for where
+/// light leaves the ball spans the wider one, and is not to be coarser than the ball's texels.
 TEST_F(SpecularTest, GlassFarAwayDoesNotBlurTheSearchThroughABall) {
   scene::Scene scene;
-  scene.environment = test::environmentOf(64, [](const vec3& d) { return 1.f + 0.5f * d; });
   const int ball = addGlass(scene, 1.5f), pane = addLambert(scene);
   show(scene, test::spherePrimitive(0.025f, ball));
-  show(scene, quad({0, 0, 500}, {1, 0, 0}, {0, 1, 0}, pane));
-  const auto camera = scene::lookAt({0, 0, 0.15f}, {0, 0, 0}, 0.4f);
-  const auto seen = [&] {
-    render::Renderer renderer(device(), scene);
-    return picture(renderer, settings(width, height, Term::specular, {refraction()}), camera);
-  };
-  const Image alone = seen();
-  ASSERT_GT(mean(alone), 0);
-  scene.materials[static_cast<size_t>(pane)] = test::glass(1.5f);
-  EXPECT_LT(relativeRms(seen(), alone), 0.005);
+  show(scene, quad({0, 0, 500}, {500, 0, 0}, {0, 500, 0}, pane));
+  EXPECT_LT(changeWithGlass(scene, pane, scene::lookAt({0, 0, 0.15f}, {0, 0, 0}, 0.4f)), 0.005);
+}
+
+/// A body of a ball and, beside it, a bar along the view, and far behind the camera a small pane. Light that
+/// enters the ball at its left leaves it towards the bar. Points of a search over the way to the pane lie
+/// further apart than all of the body is long, and halving the way between would first come upon the bar, as
+/// if the gap were glass.
+TEST_F(SpecularTest, GlassFarAwayFillsNoGapOfABody) {
+  scene::Scene scene;
+  const int glass = addGlass(scene, 1.5f), pane = addLambert(scene);
+  const vec3 x(0.1f, 0, 0), y(0, 0.1f, 0), z(0, 0, 0.8f), middle(0.105f, 0, -0.4f);
+  scene::Primitive body = test::spherePrimitive(0.05f, glass);
+  for (const auto& [out, u, v] : {std::array{x, y, z}, std::array{y, z, x}, std::array{z, x, y}}) {
+    body = test::joined(std::move(body), quad(middle + 0.5f * out, u, v, glass));
+    body = test::joined(std::move(body), quad(middle - 0.5f * out, v, u, glass));
+  }
+  show(scene, std::move(body));
+  show(scene, quad({0, 0, 500}, x, y, pane));
+  EXPECT_LT(changeWithGlass(scene, pane, scene::lookAt({0.05f, 0, 4}, {0.05f, 0, 0}, 0.045f)), 0.05);
 }
 
 TEST_F(SpecularTest, WithoutSpecularSurfacesThereAreNoPasses) {

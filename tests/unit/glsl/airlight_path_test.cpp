@@ -224,6 +224,28 @@ TEST_P(AirlightPathTest, AStretchOfNoLengthHasNoLight) {
   EXPECT_NEAR(nodes.shares.y, gauss_node, 1e-6f);
 }
 
+/// A light's range is about as large as its scene, which may have any size: floats need not hold its fourth
+/// power, nor one over that. With even scattering and without a cone the factor is that of the range.
+TEST(AirlightRanges, AreTheSameAtAllScales) {
+  for (const float range : {1e-12f, 1.f, 1e12f}) {
+    Light light{};
+    light.type = light_point;
+    light.direction = {0, -1, 0};
+    light.emission = vec3(1);
+    light.own_instance = no_instance;
+    light.range = range;
+    const Medium medium{vec3(0), vec3(1), 0, {vec3(0), range}};
+    const AirlightRay ray =
+        airlight_ray(medium, light, light.position, 0, range * vec3(-1, 0.1f, 0), vec3(1, 0, 0));
+    const AirlightPath path = airlight_path(medium, light, light_kind_point, ray, 1);
+    for (const float share : {-0.5f, 0.f, 0.7f, 0.9f}) {
+      const float q = share * range;
+      const float expected = range_factor(light, length(airlight_path_place(path, q)));
+      EXPECT_NEAR(airlight_path_factor(path, light_kind_point, q), expected, 1e-5f) << range << " " << share;
+    }
+  }
+}
+
 /// As their names say, from angles that are nearly 0 to beyond where the series end.
 TEST(AirlightTangents, KeepTheirPrecision) {
   for (float x = 1e-30f; x < 1.5f; x *= 1.01f) {
