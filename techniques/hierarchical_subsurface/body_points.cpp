@@ -32,6 +32,16 @@ void copyDraw(const scene::Pose& pose, uint32_t draw, scene::Pose& own) {
   copy.deformed = 0;
 }
 
+/// Returns whether a draw is in `pose` where it is in `own`, as copyDraw() left it, in the same shape.
+bool stands(const scene::Pose& pose, uint32_t draw, const scene::Pose& own) {
+  const scene::DrawInstance &now = pose.instances[draw], &then = own.instances.front();
+  if (now.objectToWorld != then.objectToWorld) return false;
+  if (now.deformed == scene::kNone) return true;
+  const scene::Deformation &shape = pose.deformed[static_cast<size_t>(now.deformed)],
+                           &before = own.deformed.front();
+  return shape.joints == before.joints && shape.morphWeights == before.morphWeights;
+}
+
 /// Returns the inverse of a matrix, nothing where it has none.
 std::optional<glm::dmat4> inverseOf(const glm::mat4& matrix) {
   const glm::dmat4 inverse = glm::inverse(glm::dmat4(matrix));
@@ -83,8 +93,11 @@ void BodyPoints::update(const scene::Pose& pose) {
     if (part.toOwn) {
       const glm::mat4 &now = pose.instances[part.draw].objectToWorld,
                       &made = part.pose.instances.front().objectToWorld;
-      part.motion = now == made ? glm::dmat4(1) : glm::dmat4(now) * *part.toOwn;
+      const glm::dmat4 motion = now == made ? glm::dmat4(1) : glm::dmat4(now) * *part.toOwn;
+      if (motion == part.motion) continue;
+      part.motion = motion;
     } else {
+      if (stands(pose, part.draw, part.pose)) continue;
       copyDraw(pose, part.draw, part.pose);
       part.elements->update(part.pose);
     }
@@ -98,15 +111,18 @@ BodyPoints::Body BodyPoints::makeBody(uint32_t draw, const scene::Pose& pose, in
   body.draw = draw;
   copyDraw(pose, draw, body.pose);
   body.pose.bounds = scene::instanceBounds(scene_, pose, pose.instances[draw]);
+  size_t fronts = 0;  // of elements; those on the backs of double-sided bodies are no points
   const auto create = [&](float longestEdge) {
     body.elements = std::make_unique<radiosity::SceneElements>(
         scene_, body.pose, longestEdge, static_cast<uint32_t>(std::min(most, countable)));
     const radiosity::Surfels& surfels = body.elements->surfels();
     body.areas.assign(body.elements->forest().leafSlots(), 0);
+    fronts = 0;
     float area = 0, square = 0;
     for (size_t i = 0; i < surfels.size(); ++i) {
       if (surfels.origins[surfels.firstOrigin[i]].side < 0) continue;
       body.areas[body.elements->forest().leafOf()[i]] = surfels.areas[i];
+      ++fronts;
       area += surfels.areas[i];
       square += surfels.areas[i] * surfels.areas[i];
     }
@@ -114,7 +130,7 @@ BodyPoints::Body BodyPoints::makeBody(uint32_t draw, const scene::Pose& pose, in
     return area;
   };
   const float area = create(10);
-  const auto fewer = static_cast<float>(body.elements->surfels().size()) < static_cast<float>(count);
+  const bool fewer = fronts < static_cast<size_t>(count);
   if (fewer && area > 0) create(std::sqrt(kPointsPerSquare * area / static_cast<float>(count)));
   body.elements->update(body.pose);  // clusters are where points are that left what encloses them
   if (body.pose.instances.front().deformed == scene::kNone)

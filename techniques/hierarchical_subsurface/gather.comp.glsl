@@ -1,6 +1,6 @@
 // What leaves at the pixels of translucent bodies: the light of the body's points, and of what enters at the pixel, as far as
 // it leaves nearer than points tell.
-#include "glsl/surface/gbuffer_input.glsl"
+#include "glsl/diffusion/pixel_exit.glsl"
 #include "techniques/hierarchical_subsurface/scatter_matter.glsl"
 
 layout(local_size_x = 8, local_size_y = 8) in;
@@ -27,7 +27,6 @@ void main() {
   vec3 x = (position - body.centre) / body.radius;
   vec3 leaving = scatter_near(matter, body.softening) * texelFetch(entering, pixel, 0).rgb +
                  light_of_points(body.first_node, x, matter, body.softening, tolerance);
-  float cosine = dot(surface.normal, normalize(frame.camera_position.xyz - position));
-  vec3 light = pi * diffusion_exit(boundary, cosine) * leaving;
+  vec3 light = pixel_exit(pixel, boundary) * leaving;
   imageStore(radiance, pixel, imageLoad(radiance, pixel) + vec4(light, 0.0));
 }

@@ -35,7 +35,7 @@ struct ScatterNode {
   uint children;     // the first of them, or scatter_none
   uint child_count;  // which follow one another
   uint next;         // where the walk goes on behind the node, or scatter_none
-  uint unused;
+  float extent;      // area by which it is opened: its own, or more where its points lie far apart
 };
 
 LIMN_END

@@ -5,9 +5,9 @@
 #include "techniques/hierarchical_subsurface/scatter_matter.glsl"
 LIMN_BEGIN
 
-// Whether a cluster's solid angle (Jensen and Buhler 2002), at the softened distance, is above the tolerance, sr.
+// Whether the solid angle of a cluster's extent (Jensen and Buhler 2002), at the softened distance, is above the tolerance, sr.
 LIMN_FN bool scatter_opens(ScatterNode node, float softened2, float tolerance) {
-  return node.children != scatter_none && node.area > tolerance * softened2;
+  return node.children != scatter_none && node.extent > tolerance * softened2;
 }
 
 // What the points below `first` and behind it send to x. Clusters follow each other in depth-first order, so that no stack is

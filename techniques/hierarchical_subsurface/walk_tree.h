@@ -69,10 +69,19 @@ class WalkTree {
           n.centre = motion.turn * space.worldDirection({group.x[k], group.y[k], group.z[k]}) + motion.shift;
           n.area = level == 0 ? areas[4 * g + lane] : 0;
           for (uint32_t child = 0; child < n.child_count; ++child) n.area += nodes_[n.children + child].area;
+          n.extent = extentOf(n.area, group.radius[k]);
         }
   }
 
  private:
+  /// Returns the area by which a cluster is opened. Clusters that are long and narrow, or of parts that lie
+  /// apart, look small from places in their midst: each counts as a square with corners as far from its
+  /// centroid as its farthest point. `radius`: of a ball around it that holds all points.
+  static float extentOf(float area, float radius) {
+    const bool wide = area > 0 && radius * radius > area;
+    return wide ? 2 * radius * radius : area;
+  }
+
   /// Clusters are chained one behind the other, and so are the four children of an element.
   void link(size_t body, const radiosity::Forest& forest) {
     const auto levels = forest.levels();

@@ -294,30 +294,41 @@ TEST_F(SubsurfaceTechniqueTest, BodiesThatUnfoldedAreThoseOfAFreshStart) {
   }
 }
 
-/// What is kept from frame to frame follows a body that moves as a whole.
+/// What is kept from frame to frame follows a body that moves as a whole, by its matrix or by a morph target.
 TEST_F(SubsurfaceTechniqueTest, BodiesThatMovedAreThoseOfAFreshStart) {
-  scene::Scene scene = ball(0.1f);
-  scene.nodes[0].matrix.reset();
-  scene::Animation& animation = scene.animations.emplace_back();
-  animation.duration = 2;
-  animation.channels.push_back({scene::AnimationChannel::Path::translation,
-                                scene::AnimationChannel::Interpolation::linear,
-                                0,
-                                {0, 1},
-                                {0, 0, 0, 0.75f, 0, 0}});
-  for (const render::TechniqueUse& use : uses()) {
-    SCOPED_TRACE(use.plugin->info->name);
-    render::Settings s = settings(kPictureSide, kPictureSide, Term::subsurface, {use});
-    s.dynamic = false;
-    render::Renderer moved(device(), scene), fresh(device(), scene);
-    moved.configure(s);
-    fresh.configure(s);
-    const Image before = pictureAt(moved, 0), after = pictureAt(moved, 1), wanted = pictureAt(fresh, 1);
-    const double change = rmse(before, wanted);
-    EXPECT_GT(change, 0.1 * mean(wanted));
-    // Rounding of places decides on other clusters and charts, whose errors are some thousandths of the
-    // light.
-    EXPECT_LT(rmse(after, wanted), 0.1 * change);
+  using Path = scene::AnimationChannel::Path;
+  for (const bool morphs : {false, true}) {
+    scene::Scene scene = ball(0.1f);
+    scene.nodes[0].matrix.reset();
+    scene::Animation& animation = scene.animations.emplace_back();
+    animation.duration = 2;
+    animation.channels.push_back({morphs ? Path::weights : Path::translation,
+                                  scene::AnimationChannel::Interpolation::linear,
+                                  0,
+                                  {0, 1},
+                                  {0, 0, 0, 0.75f, 0, 0}});
+    if (morphs) {
+      animation.channels.back().values = {0, 1};
+      scene::Primitive& body = scene.meshes[0].primitives[0];
+      scene::MorphTarget& target = body.morphTargets.emplace_back();
+      target.positions.assign(body.positions.size(), vec3(0.75f, 0, 0));
+      for (const vec3& shift : {vec3(0), target.positions.front()}) target.deltaBounds.add(shift);
+      scene.meshes[0].morphWeights = scene.nodes[0].morphWeights = {0};
+    }
+    for (const render::TechniqueUse& use : uses()) {
+      SCOPED_TRACE(std::string(use.plugin->info->name) + (morphs ? ", morphed" : ""));
+      render::Settings s = settings(kPictureSide, kPictureSide, Term::subsurface, {use});
+      s.dynamic = false;
+      render::Renderer moved(device(), scene), fresh(device(), scene);
+      moved.configure(s);
+      fresh.configure(s);
+      const Image before = pictureAt(moved, 0), after = pictureAt(moved, 1), wanted = pictureAt(fresh, 1);
+      const double change = rmse(before, wanted);
+      EXPECT_GT(change, 0.1 * mean(wanted));
+      // Rounding of places decides on other clusters and charts, whose errors are some thousandths of the
+      // light.
+      EXPECT_LT(rmse(after, wanted), 0.1 * change);
+    }
   }
 }
 
@@ -348,6 +359,27 @@ TEST_F(SubsurfaceTechniqueTest, PointsFollowTheMatrixOfTheirBody) {
   EXPECT_GT(change, 0.1 * mean(wanted));
   // Areas stay as they were made, 4 % less.
   EXPECT_LT(rmse(after, wanted), 0.1 * change);
+}
+
+/// The points that are asked for lie on a body's front, also where it has a back: twice as many elements then
+/// take their slots. The ball's own vertices are more than half of them.
+TEST_F(SubsurfaceTechniqueTest, BodiesWithTwoSidesHaveAsManyPointsOnTheirFronts) {
+  const auto bytesOfPoints = [](bool doubleSided) {
+    scene::Scene scene = ball(0.1f);
+    scene.meshes[0].primitives[0] = test::spherePrimitive(1, 0, 16);  // 482 places
+    scene.nodes[1].mesh = scene::kNone;
+    scene.materials[0].doubleSided = doubleSided;
+    render::Renderer renderer(device(), scene);
+    drawn(renderer, {technique("hierarchical_subsurface", {{"points", "900"}})});
+    int64_t bytes = 0;
+    for (const frame::PassReport& pass : renderer.explain())
+      for (const frame::AccessReport& access : pass.accesses)
+        if (access.resource == "points of bodies") bytes = access.bytes;
+    return bytes;
+  };
+  const auto oneSide = static_cast<double>(bytesOfPoints(false));
+  EXPECT_GT(oneSide, 900.0 * 32);
+  EXPECT_GT(static_cast<double>(bytesOfPoints(true)), 1.5 * oneSide);
 }
 
 /// Without translucent surfaces techniques are not asked, and pictures are the same in all bits.

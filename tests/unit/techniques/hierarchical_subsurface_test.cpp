@@ -54,6 +54,20 @@ radiosity::TriangleMesh square(int side) {
       [](glm::vec2) { return glm::vec3(0, 0, 1); });
 }
 
+/// A band on the x axis, 50 times as long as wide.
+radiosity::TriangleMesh band(int side) {
+  return grid(
+      side, [](glm::vec2 uv) { return glm::vec3(2.f * uv.x - 1.f, 0.04f * uv.y - 0.02f, 0); },
+      [](glm::vec2) { return glm::vec3(0, 0, 1); });
+}
+
+/// A small square whose middle is there.
+radiosity::TriangleMesh patch(const glm::vec3& middle) {
+  return grid(
+      2, [middle](glm::vec2 uv) { return middle + glm::vec3(0.04f * uv - 0.02f, 0); },
+      [](glm::vec2) { return glm::vec3(0, 0, 1); });
+}
+
 /// The unit sphere, as a cube whose faces are blown up.
 std::vector<radiosity::TriangleMesh> sphere(int side) {
   std::vector<radiosity::TriangleMesh> faces;
@@ -258,6 +272,41 @@ TEST_F(HierarchicalSubsurface, ClustersMeetTheSumOverAllPointsWithinTheTolerance
           for (int c = 0; c < 3; ++c) EXPECT_NEAR(some[c], all[c], tolerance * 0.5f * full[c]);
         }
     }
+}
+
+// By its area the whole band looks small from its end. A cluster that is not opened counts as t s^2 at most.
+// If it counts as 2 r^2, its points have a mean square of r^2 / 3 along the band, where they lie evenly, and
+// the second order, 12 / (2 s^2) times that, is at most t. If it counts as its area A, r^2 is A at most, the
+// mean square A / 3, and the second order 2 t.
+TEST_F(HierarchicalSubsurface, LongClustersMeetTheSumOverAllPointsWithinTheTolerance) {
+  build({band(64)});
+  light([](const glm::vec3&) { return glm::vec3(1); });
+  const ProfileColours matter = matterOf(bodyOf({3, 10, 30}, glm::vec3(0.001f)));
+  for (const glm::vec3& x : {glm::vec3(1, 0, 0), glm::vec3(1.02f, 0, -0.01f), glm::vec3(0.6f, 0.02f, 0)}) {
+    const glm::vec3 all = directSum(x, matter);
+    for (const float tolerance : {0.03f, 0.1f}) {
+      const glm::vec3 some = walk(0, x, matter, tolerance);
+      for (int c = 0; c < 3; ++c) EXPECT_NEAR(some[c], all[c], 2 * tolerance * all[c]) << x.x << ' ' << c;
+    }
+  }
+}
+
+// Pieces of a few points share a cluster, wherever they lie. What a piece gets of the seven others is less
+// than a hundredth of its own light.
+TEST_F(HierarchicalSubsurface, ScatteredPiecesGetTheirOwnLight) {
+  std::vector<radiosity::TriangleMesh> pieces;
+  for (int i = 0; i < 8; ++i) {
+    const float angle = glsl::pi / 4 * static_cast<float>(i);
+    pieces.push_back(patch({std::cos(angle), std::sin(angle), 0}));
+  }
+  build({joined(pieces)});
+  light([](const glm::vec3&) { return glm::vec3(1); });
+  const ProfileColours matter = matterOf(bodyOf(glm::vec3(30), glm::vec3(0.001f)));
+  for (const glm::vec3& x : {glm::vec3(1, 0, 0), glm::vec3(0, -1, 0)}) {
+    const float all = directSum(x, matter).x;
+    for (const float tolerance : {0.03f, 0.1f})
+      EXPECT_NEAR(walk(0, x, matter, tolerance).x, all, 0.02f * all) << tolerance;
+  }
 }
 
 // Of a sphere's area, pi d^2 lies within the chord d, as in the plane: all that enters alike at a sphere of
