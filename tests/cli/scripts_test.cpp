@@ -51,6 +51,18 @@ TEST_F(Scripts, DemoWritesWhereItIsCalled) {
   EXPECT_THAT(said(), testing::HasSubstr("--out " + (fs::canonical(caller_) / "mine/bench").string() + "\n"));
 }
 
+/// Who asks what a script does gets no build and no folder called --help.
+TEST_F(Scripts, SayWhatTheyDo) {
+  for (const char* script : {"demo", "test"}) {
+    const Outcome outcome = call(script, "--help");
+    EXPECT_EQ(outcome.status, 0) << outcome.err;
+    EXPECT_THAT(outcome.out, testing::StartsWith("Installs"));
+  }
+  EXPECT_EQ(call("demo", "--pictures").status, 2);
+  EXPECT_TRUE(fs::is_empty(caller_));
+  EXPECT_EQ(said(), "");
+}
+
 TEST_F(Scripts, TheGallerySaysThePicturesCommands) {
   const std::string name = "cornell_box.hard_shadow_map.png";
   const Outcome rendered = limn({"render", "cornell_box", "--technique", "hard_shadow_map", "--size", "16x12",
@@ -96,6 +108,35 @@ TEST_F(Scripts, GpuRunLeavesNoTableOfAnEarlierRun) {
   std::ofstream(packed[0] / "bound/gone.csv") << "scene,camera,light\n";
   call("gpu-run", "--software bound");
   EXPECT_FALSE(fs::exists(packed[0] / "bound/gone.csv"));
+}
+
+/// As limn's own tables: what failed when it was tried again hides no good row of the same program.
+TEST_F(Scripts, TablesOfDocumentsShowTheRowsThatCount) {
+  const std::string asked =
+      R"({"key": "k", "scene": "s", "camera": "", "term": "direct", "technique": "t", "title": "", )"
+      R"("light_size": 0, "time": 0, "environment": {"map": ""}, "changes": {}, "size": [1, 1], "fps": 0, )"
+      R"("time_size": [0, 0], "parameters": {}, "max_masked_share": 0.005, )"
+      R"("provenance": {"scene": "s", "techniques": [], "program": )";
+  const std::string good = asked + R"("1"}, "stats": {}, "error": {"rmse": 0.5, "structured": 0, "bias": 0, )"
+                                   R"("noise_floor": 0, "masked_share": 0}})";
+  const auto failed = [&](const std::string& program) {
+    return asked + "\"" + program + R"("}, "failure": "lost", "renderer": "r"})";
+  };
+  const auto page = [&](const std::string& first, const std::string& second) {
+    fs::create_directories(root_ / "docs/results/run");
+    std::ofstream(root_ / "docs/results/tables.toml")
+        << "[[tables]]\npage = 'docs/page.md'\nname = 'n'\nresults = ['run']\ncell = '{rmse:.1f}'\n"
+           "failed = 'refused'\ncolumns = [{label = 'RMSE'}]\nrows = [{label = 't', technique = 't'}]\n";
+    std::ofstream(root_ / "docs/results/run/results.jsonl") << first << '\n' << second << '\n';
+    std::ofstream(root_ / "docs/page.md") << "<!-- table n -->\n";
+    const Outcome outcome = call("result-tables", "");
+    EXPECT_EQ(outcome.status, 0) << outcome.err;
+    return contents(root_ / "docs/page.md");
+  };
+  const std::string head = "<!-- table n -->\n| | RMSE |\n| --- | --: |\n";
+  EXPECT_EQ(page(good, failed("1")), head + "| t | 0.5 |\n");
+  EXPECT_EQ(page(failed("1"), good), head + "| t | 0.5 |\n");
+  EXPECT_EQ(page(good, failed("2")), head + "| t | refused |\n") << "an old answer would hide it";
 }
 
 /// A build with tests compiles nothing again that one without them has compiled.

@@ -329,6 +329,17 @@ TEST(BenchSuite, SubtractiveFiguresShowEachPartOfFourMaterials) {
     EXPECT_EQ(parts, (std::multiset<std::string>{"hidden", "light", "shadow_buffer", "unshadowed"})) << time;
 }
 
+/// A newcomer decides by them whether to start it.
+TEST(BenchSuite, TheReadmeCountsTheCasesOfTheThesis) {
+  const std::filesystem::path root(limn::test::kSourceDir);
+  const std::string readme = readTextFile(root / "README.md", 1 << 24);
+  for (const char* name : {"thesis", "thesis_quick"}) {
+    const std::size_t cases = readSuite(root / "benchmarks" / fmt::format("{}.toml", name)).cases.size();
+    EXPECT_NE(readme.find(fmt::format("{}` ({} cases)", name, cases)), std::string::npos)
+        << name << ": " << cases;
+  }
+}
+
 TEST(BenchSuite, ReadsEverySuiteOfTheRepository) {
   const std::filesystem::path root(limn::test::kSourceDir);
   int chapters = 0, techniques = 0;
