@@ -64,10 +64,12 @@ LIMN_API std::vector<std::filesystem::path> inputFiles(const SceneQuestion& ques
 /// do not exist.
 LIMN_API void relight(View& view, const SceneQuestion& question);
 
-/// Sets time, pose and camera, and the lights that follow one of them, so that all is as open() makes it at
-/// that time: default lights follow the camera; lights of which --set-light sets the position or rotation
-/// alone, and those that have no area at the start of an animation, the time.
+/// Sets time, pose and camera, and the lights that follow one of them, so that all but the number of the
+/// chosen light (chooseLight()) is as open() makes it at that time: default lights follow the camera; lights
+/// of which --set-light sets the position or rotation alone, and those that have no area at the start of an
+/// animation, the time.
 LIMN_API void moveTo(View& view, const SceneQuestion& question, double time);
+
 /// Sets the number of the light that the question chooses (--light) among those of the pose: an animation
 /// that makes a lamp none, as one that skews it does, moves the numbers of those behind it. Throws UsageError
 /// where there is no such light.
